@@ -1,0 +1,11 @@
+# Warnings are errors in our own code; sanitizers and coverage come from the presets.
+add_library(relievo_flags INTERFACE)
+target_compile_options(relievo_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Werror)
+if(RELIEVO_SANITIZE)
+  add_compile_options(-fsanitize=${RELIEVO_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${RELIEVO_SANITIZE})
+endif()
+if(RELIEVO_COVERAGE)
+  add_compile_options(--coverage -O0)
+  add_link_options(--coverage)
+endif()

@@ -1,0 +1,18 @@
+# Writes a C++ file that holds each listed file as a raw string. ROOT, LIST and OUTPUT are given.
+# The delimiter is ours alone; literals are cut below the length that compilers must accept.
+file(STRINGS ${LIST} files)
+set(text "#include \"relievo/describe.hpp\"\n\nnamespace relievo {\n\nconst SourceTree& embedded_sources() {\n  static const SourceTree tree = {\n")
+foreach(file IN LISTS files)
+  file(READ ${ROOT}/${file} content)
+  string(LENGTH "${content}" length)
+  string(APPEND text "      {\"${file}\", std::string()")
+  set(start 0)
+  while(start LESS length)
+    string(SUBSTRING "${content}" ${start} 8000 piece)
+    string(APPEND text "\n + R\"relievo(${piece})relievo\"")
+    math(EXPR start "${start} + 8000")
+  endwhile()
+  string(APPEND text "},\n")
+endforeach()
+string(APPEND text "  };\n  return tree;\n}\n\n}  // namespace relievo\n")
+file(WRITE ${OUTPUT} "${text}")

@@ -1,0 +1,59 @@
+/// Backends turn a Job into results; each is one folder of backends/.
+#pragma once
+
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "relievo/job.hpp"
+#include "relievo/result.hpp"
+
+namespace relievo {
+
+/// What a backend found on this machine.
+struct BackendInfo {
+  std::string name;    ///< "vulkan"
+  std::string title;   ///< "Vulkan 1.3"
+  bool available = false;
+  std::string reason;  ///< why it is not available: one sentence
+  std::string device, driver, api_version;
+  std::string shader_target;  ///< what it consumes: "spirv", "glsl-450"
+  /// Names of the shader-model features of descriptors ("compute", "geometry", "explicit_lod", "texture_3d", "gather",
+  /// "vertex_texture") and of abilities ("timestamps", "linear_float32", "validation").
+  std::set<std::string> features;
+};
+
+struct BackendOptions {
+  bool validation = false;   ///< Vulkan validation layer, OpenGL debug output: reported in JobResult::messages
+  std::string device;        ///< substring of the device to use; empty = the first suitable one
+  std::string pipeline_cache;  ///< file of the Vulkan pipeline cache, read and written; empty = none
+  int fail_at_call = -1;     ///< null backend only: this call (0-based) fails
+};
+
+/// Executes Jobs. One object is used from one thread at a time.
+class Backend {
+ public:
+  virtual ~Backend() = default;
+  virtual const BackendInfo& info() const = 0;
+  /// Runs the job to completion. Errors: "job.*" for a Job that is not valid, "backend.*" when the API refuses.
+  /// Nothing of the job outlives the call.
+  virtual Result<JobResult> execute(const Job& job) = 0;
+};
+
+/// What a backend folder provides: `extern const BackendFactory relievo::backends::<folder name>_factory;`
+struct BackendFactory {
+  const char* name;
+  BackendInfo (*probe)();
+  Result<std::unique_ptr<Backend>> (*open)(const BackendOptions& options);
+};
+
+/// Probes every backend built into the library; the unavailable ones say why.
+std::vector<BackendInfo> list_backends();
+
+/// Opens a backend by name. Errors: unknown name (the nearest known one is named; "backend.unknown"),
+/// no driver ("backend.unavailable", ErrorCode::unsupported).
+Result<std::unique_ptr<Backend>> open_backend(std::string_view name, const BackendOptions& options = {});
+
+}  // namespace relievo

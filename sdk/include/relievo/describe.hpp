@@ -1,0 +1,124 @@
+/// Descriptors: what techniques, maps and stages say of themselves, and the registry that finds them by scanning.
+/// The schema of the three files is in docs/descriptors.md.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "relievo/job.hpp"
+#include "relievo/result.hpp"
+
+namespace relievo {
+
+/// When a loop count or parameter gets its value: as a macro (re-parse), a specialization constant (no re-parse), or a
+/// uniform (no new program).
+enum class BindingTime { macro, specialization, uniform };
+std::string_view to_string(BindingTime time);
+
+/// A loop count or parameter. In GLSL it is the identifier `<owner>_<name>`.
+struct Parameter {
+  std::string name;
+  std::string title;
+  bool is_integer = false;
+  bool is_loop = false;    ///< an iteration bound
+  std::string unit;        ///< "steps", "texels", "1", …
+  double minimum = 0, maximum = 0, value = 0;  ///< range and default
+  BindingTime binding = BindingTime::uniform;
+  std::string file; int line = 0;  ///< where it was declared
+};
+
+/// The survey's classes (§4): does it guarantee the first hit?
+enum class TechniqueClass { non_iterative, unsafe, quasi_safe, safe, combined };
+std::string_view to_string(TechniqueClass value);
+
+enum class FirstHit { never, if_steps_under_texel, always };
+std::string_view to_string(FirstHit value);
+
+/// Shader-model features a descriptor can require.
+/// dynamic_loops, explicit_lod, texture_3d, gather, geometry, tessellation, compute, vertex_texture, depth_write
+using FeatureSet = std::set<std::string>;
+const FeatureSet& known_features();
+
+struct TechniqueDescriptor {
+  std::string name, title, source, summary;
+  TechniqueClass technique_class = TechniqueClass::unsafe;
+  FirstHit first_hit = FirstHit::never;
+  std::vector<std::string> maps;       ///< names of the maps it reads, "height" included
+  std::vector<Parameter> parameters;   ///< loops first, then the others
+  FeatureSet features;
+  std::string module;                  ///< source path of its GLSL in the registry's tree
+  std::string file;                    ///< source path of the descriptor
+};
+
+/// A map baked by a compute module: reads its inputs, writes `channels` floats a texel.
+struct MapDescriptor {
+  std::string name, title, source, summary;
+  std::vector<std::string> inputs;     ///< other maps; empty for `height`, which the caller provides
+  int channels = 1;                    ///< 1–4
+  std::string sampler;                 ///< GLSL name, e.g. "relievo_height_map"
+  int set = 1, binding = 0;            ///< the binding contract; unique among maps
+  std::vector<Parameter> parameters;
+  FeatureSet features;
+  std::string module;                  ///< compute shader; empty for provided maps
+  std::string access;                  ///< GLSL included wherever the map is bound: its sampling functions; may be empty
+  std::string file;
+};
+
+struct StageShader {
+  ShaderStage stage = ShaderStage::compute;
+  std::string module;
+};
+
+/// A stage hosts a technique's trace (roles non-empty) or displaces geometry itself (roles empty).
+struct StageDescriptor {
+  std::string name, title, source, summary;
+  std::vector<StageShader> shaders;     ///< in pipeline order
+  std::vector<std::string> roles;       ///< "view", …
+  std::vector<std::string> maps;        ///< maps the stage itself reads, e.g. "normal" for shading
+  std::vector<Parameter> parameters;
+  FeatureSet features;
+  std::string fallback;                 ///< the stage to use where a feature is missing; may be empty
+  std::string mesh;                     ///< what geometry it draws: "none" (compute), "base", "tessellated", "prisms"
+  std::string file;
+};
+
+/// Every file of the SDK and of the user's folders by source path ("shaders/lib/ray.glsl"): what the composer may include.
+using SourceTree = std::map<std::string, std::string, std::less<>>;
+
+struct Registry {
+  std::map<std::string, TechniqueDescriptor, std::less<>> techniques;
+  std::map<std::string, MapDescriptor, std::less<>> maps;
+  std::map<std::string, StageDescriptor, std::less<>> stages;
+  SourceTree sources;
+
+  /// Look-ups by name; the error ("describe.unknown-technique", …) names the nearest known name.
+  Result<const TechniqueDescriptor*> technique(std::string_view name) const;
+  Result<const MapDescriptor*> map(std::string_view name) const;
+  Result<const StageDescriptor*> stage(std::string_view name) const;
+};
+
+/// The files embedded in the library at build time.
+const SourceTree& embedded_sources();
+
+/// Our own descriptors, and those in each of `folders`: every subfolder (or the folder itself) that holds a
+/// technique.toml, map.toml or stage.toml; its files enter the tree below "<subfolder kind>/<subfolder name>/".
+/// A name that is already taken is an error ("describe.duplicate").
+Result<Registry> load_registry(const std::vector<std::filesystem::path>& folders = {});
+
+/// As above from a tree alone; what the embedded sources go through.
+Result<Registry> load_registry(SourceTree sources);
+
+/// Parses one descriptor. `path` is its source path; relative module paths resolve against its folder.
+/// Errors carry line and column, the given value, what was expected, and the nearest known key.
+Result<TechniqueDescriptor> parse_technique(std::string_view text, const std::string& path);
+Result<MapDescriptor> parse_map(std::string_view text, const std::string& path);
+Result<StageDescriptor> parse_stage(std::string_view text, const std::string& path);
+
+/// The candidate nearest to `name` by edit distance, or empty when none is near (distance > max(2, length/3)).
+std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
+
+}  // namespace relievo

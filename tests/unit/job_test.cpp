@@ -1,0 +1,328 @@
+#include "relievo/job.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+namespace relievo {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<std::byte> bytes(std::size_t count) {
+  return std::vector<std::byte>(count, std::byte{7});
+}
+
+ShaderCode shader(ShaderStage stage) {
+  return {stage, {0x07230203, 0x00010300, 0, 1, 0}, {{"glsl-450", "void main() {}"}}};
+}
+
+ShaderProgram compute_program() {
+  return {"trace",
+          {shader(ShaderStage::compute)},
+          {{ResourceKind::storage_buffer, 0, 0, "Rays", 0},
+           {ResourceKind::sampled_texture, 1, 2, "height", 0},
+           {ResourceKind::storage_texture, 2, 0, "result", 0}},
+          {{3, 0x3f800000}}};
+}
+
+ShaderProgram draw_program() {
+  return {"surface", {shader(ShaderStage::vertex), shader(ShaderStage::fragment)}, {}, {}};
+}
+
+Texture texture(std::string name, Format format, int width, int height) {
+  Texture result;
+  result.name = std::move(name);
+  result.format = format;
+  result.width = width;
+  result.height = height;
+  return result;
+}
+
+Draw draw() {
+  Draw result;
+  result.program = 1;
+  result.vertex_buffer = 1;
+  result.vertex_stride = 16;
+  result.attributes = {{0, Format::rgb32_float, 0}, {1, Format::r32_uint, 12}};
+  result.count = 3;
+  result.color_targets = {2};
+  result.depth_target = 3;
+  result.clear_color = {{0, 0.5f, 1, 1}};
+  result.clear_depth = 1.0f;
+  result.cull = CullMode::back;
+  return result;
+}
+
+/// A valid job that uses every field.
+Job sample_job() {
+  Job job;
+  job.name = "sample";
+  job.programs = {compute_program(), draw_program()};
+  job.buffers = {{"rays", 64, {}}, {"vertices", 48, bytes(48)}};
+  Texture height = texture("height", Format::r16_unorm, 5, 3);
+  height.levels = 2;
+  height.data = {bytes(30), bytes(4)};
+  height.sampler = {
+      TexelFilter::nearest, TexelFilter::linear, {TexelAddress::mirror, TexelAddress::clamp, TexelAddress::repeat}};
+  job.textures = {height, texture("result", Format::r32_float, 8, 8), texture("color", Format::rgba8_unorm, 9, 4),
+                  texture("depth", Format::d32_float, 9, 4)};
+  job.commands = {Dispatch{0, {{0, 0, 0}, {1, 2, 0}, {2, 0, 1}}, {4, 1, 1}}, draw()};
+  job.read_backs = {{ReadBack::Source::buffer, 0, 0}, {ReadBack::Source::texture, 0, 1}};
+  return job;
+}
+
+Draw& draw_of(Job& job) {
+  return std::get<Draw>(job.commands[1]);
+}
+Dispatch& dispatch_of(Job& job) {
+  return std::get<Dispatch>(job.commands[0]);
+}
+
+struct Fault {
+  const char* id;
+  const char* sentence;  ///< a part of it
+  std::function<void(Job&)> seed;
+};
+
+const Fault faults[] = {
+    {"job.program", "has no shaders", [](Job& j) { j.programs[0].shaders.clear(); }},
+    {"job.program", "two compute", [](Job& j) { j.programs[0].shaders.push_back(shader(ShaderStage::compute)); }},
+    {"job.program", "expected it alone",
+     [](Job& j) { j.programs[0].shaders.push_back(shader(ShaderStage::fragment)); }},
+    {"job.program", "no code", [](Job& j) { j.programs[0].shaders[0] = {}; }},
+    {"job.program", "neither", [](Job& j) { j.programs[1].shaders.erase(j.programs[1].shaders.begin()); }},
+    {"job.program", "both or none",
+     [](Job& j) { j.programs[1].shaders.push_back(shader(ShaderStage::tessellation_control)); }},
+    {"job.slot", "set -1", [](Job& j) { j.programs[0].bindings[0].set = -1; }},
+    {"job.slot", "at set 0 binding 0",
+     [](Job& j) {
+       j.programs[0].bindings.push_back({ResourceKind::uniform_buffer, 0, 0, "Twin", 4});
+     }},
+    {"job.slot", "OpenGL slot 0",
+     [](Job& j) {
+       j.programs[0].bindings.push_back({ResourceKind::storage_buffer, 0, 5, "Twin", 0});
+     }},
+    {"job.constant", "constant 3 has two",
+     [](Job& j) {
+       j.programs[0].constants.push_back({3, 1});
+     }},
+    {"job.size", "has 0 bytes", [](Job& j) { j.buffers[0].size = 0; }},
+    {"job.size", "expected 64 or none", [](Job& j) { j.buffers[0].data = bytes(63); }},
+    {"job.size", "0x3x1 texels", [](Job& j) { j.textures[0].width = 0; }},
+    {"job.size", "expected extents of 1..", [](Job& j) { j.textures[0].height = std::numeric_limits<int>::max(); }},
+    {"job.size", "expected 1..4", [](Job& j) { j.textures[1].levels = 5; }},
+    {"job.size", "data of 1 levels, expected 2", [](Job& j) { j.textures[0].data.pop_back(); }},
+    {"job.size", "level 1 holds 3 bytes, expected 4", [](Job& j) { j.textures[0].data[1].pop_back(); }},
+    {"job.format", "3D texture of d32_float", [](Job& j) { j.textures[3].is_3d = true; }},
+    {"job.index", "runs program 2, the job has 2", [](Job& j) { dispatch_of(j).program = 2; }},
+    {"job.program", "expected a compute program", [](Job& j) { dispatch_of(j).program = 1; }},
+    {"job.program", "expected a graphics program", [](Job& j) { draw_of(j).program = 0; }},
+    {"job.groups", "4x0x1 groups", [](Job& j) { dispatch_of(j).groups[1] = 0; }},
+    {"job.groups", "65536x1x1", [](Job& j) { dispatch_of(j).groups[0] = 65536; }},
+    {"job.binding", "bound twice",
+     [](Job& j) {
+       dispatch_of(j).resources.push_back({0, 0, 1});
+     }},
+    {"job.binding", "\"result\" (set 2 binding 0) is not bound", [](Job& j) { dispatch_of(j).resources.pop_back(); }},
+    {"job.binding", "set 7 binding 0, which",
+     [](Job& j) {
+       dispatch_of(j).resources.push_back({7, 0, 0});
+     }},
+    {"job.index", "buffer 2, the job has 2", [](Job& j) { dispatch_of(j).resources[0].resource = 2; }},
+    {"job.index", "texture -1", [](Job& j) { dispatch_of(j).resources[1].resource = -1; }},
+    {"job.format", "no storage format", [](Job& j) { j.textures[1].format = Format::rgb32_float; }},
+    {"job.format", "expected nearest",
+     [](Job& j) {
+       j.textures[1].format = Format::r32_uint;
+       dispatch_of(j).resources[1].resource = 1;
+     }},
+    {"job.count", "draws 4 vertices", [](Job& j) { draw_of(j).count = 4; }},
+    {"job.count", "0 instances", [](Job& j) { draw_of(j).instances = 0; }},
+    {"job.vertex", "stride is 0", [](Job& j) { draw_of(j).vertex_stride = 0; }},
+    {"job.vertex", "expected a 32-bit one", [](Job& j) { draw_of(j).attributes[0].format = Format::rgb8_unorm; }},
+    {"job.vertex", "location 16", [](Job& j) { draw_of(j).attributes[0].location = 16; }},
+    {"job.vertex", "two vertex attributes", [](Job& j) { draw_of(j).attributes[0].location = 1; }},
+    {"job.vertex", "does not fit", [](Job& j) { draw_of(j).attributes[1].offset = 13; }},
+    {"job.index", "vertex buffer 9", [](Job& j) { draw_of(j).vertex_buffer = 9; }},
+    {"job.size", "reads 6 vertices, buffer \"vertices\" holds 3", [](Job& j) { draw_of(j).count = 6; }},
+    {"job.index", "index buffer -2", [](Job& j) { draw_of(j).index_buffer = -2; }},
+    {"job.size", "draws 18 indices, buffer \"rays\" holds 16",
+     [](Job& j) {
+       draw_of(j).index_buffer = 0;
+       draw_of(j).count = 18;
+     }},
+    {"job.size", "reads 117901064 vertices", [](Job& j) { draw_of(j).index_buffer = 1; }},
+    {"job.target", "has no target",
+     [](Job& j) {
+       draw_of(j).color_targets.clear();
+       draw_of(j).depth_target = -1;
+     }},
+    {"job.index", "draws to texture 4", [](Job& j) { draw_of(j).color_targets[0] = 4; }},
+    {"job.target", "one texture twice", [](Job& j) { draw_of(j).color_targets.push_back(2); }},
+    {"job.target", "format d32_float", [](Job& j) { draw_of(j).color_targets[0] = 3; }},
+    {"job.target", "expected d32_float", [](Job& j) { draw_of(j).depth_target = 2; }},
+    {"job.target", "expected 9x4", [](Job& j) { j.textures[3].width = 8; }},
+    {"job.target", "3D texture", [](Job& j) { j.textures[2].is_3d = true; }},
+    {"job.target", "read and drawn to",
+     [](Job& j) {
+       j.programs[1].bindings = {{ResourceKind::sampled_texture, 0, 0, "color", 0}};
+       draw_of(j).resources = {{0, 0, 2}};
+     }},
+    {"job.clear", "clears depth to 1.5", [](Job& j) { draw_of(j).clear_depth = 1.5f; }},
+    {"job.clear", "clears depth to nan",
+     [](Job& j) { draw_of(j).clear_depth = std::numeric_limits<float>::quiet_NaN(); }},
+    {"job.clear", "finite", [](Job& j) { (*draw_of(j).clear_color)[2] = std::numeric_limits<float>::infinity(); }},
+    {"job.index", "reads buffer 2", [](Job& j) { j.read_backs[0].index = 2; }},
+    {"job.index", "reads texture 4", [](Job& j) { j.read_backs[1].index = 4; }},
+    {"job.index", "level 2 of texture \"height\", which has 2", [](Job& j) { j.read_backs[1].level = 2; }},
+};
+
+TEST(ValidateJob, AcceptsTheSample) {
+  const Status status = validate_job(sample_job());
+  EXPECT_TRUE(status) << status.error().message;
+}
+
+TEST(ValidateJob, AcceptsADrawWithoutVertexBuffer) {
+  Job job = sample_job();
+  draw_of(job).attributes.clear();
+  draw_of(job).vertex_buffer = -1;
+  EXPECT_TRUE(validate_job(job));
+}
+
+TEST(ValidateJob, NamesEveryFault) {
+  for (const Fault& fault : faults) {
+    SCOPED_TRACE(fault.sentence);
+    Job job = sample_job();
+    fault.seed(job);
+    const Status status = validate_job(job);
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().id, fault.id) << status.error().message;
+    EXPECT_THAT(status.error().message, HasSubstr(fault.sentence));
+    EXPECT_THAT(status.error().message, HasSubstr("Job \"sample\""));
+  }
+}
+
+TEST(ValidateJob, NamesTheCommandAndItsProgram) {
+  Job job = sample_job();
+  draw_of(job).count = 4;
+  EXPECT_THAT(validate_job(job).error().message, HasSubstr("command 1 (draw with \"surface\")"));
+}
+
+TEST(Format, SizesFollowChannels) {
+  EXPECT_EQ(bytes_per_texel(Format::r8_unorm), 1);
+  EXPECT_EQ(bytes_per_texel(Format::rgb8_unorm), 3);
+  EXPECT_EQ(bytes_per_texel(Format::rgb16_unorm), 6);
+  EXPECT_EQ(bytes_per_texel(Format::rgba16_unorm), 8);
+  EXPECT_EQ(bytes_per_texel(Format::rgb32_float), 12);
+  EXPECT_EQ(bytes_per_texel(Format::d32_float), 4);
+  EXPECT_EQ(channel_count(Format::rg16_unorm), 2);
+  EXPECT_EQ(channel_count(Format::r32_uint), 1);
+}
+
+TEST(Format, NamesAreThoseOfTheEnumerators) {
+  EXPECT_EQ(to_string(Format::r8_unorm), "r8_unorm");
+  EXPECT_EQ(to_string(Format::rgba32_float), "rgba32_float");
+  EXPECT_EQ(to_string(Format::d32_float), "d32_float");
+  EXPECT_EQ(to_string(ShaderStage::tessellation_evaluation), "tessellation_evaluation");
+  EXPECT_EQ(to_string(ResourceKind::storage_texture), "storage_texture");
+}
+
+TEST(LevelSize, HalvesRoundingDown) {
+  Texture volume = texture("volume", Format::rg8_unorm, 5, 3);
+  volume.depth = 7;
+  EXPECT_EQ(level_size(volume, 0), 5u * 3 * 7 * 2);
+  EXPECT_EQ(level_size(volume, 1), 2u * 1 * 3 * 2);
+  EXPECT_EQ(level_size(volume, 2), 1u * 1 * 1 * 2);
+}
+
+// Two jobs are the same when their serialised forms are: the writer covers every field, which the next test shows.
+TEST(SerializeJob, RoundTripKeepsEveryField) {
+  const Job job = sample_job();
+  const Result<Job> parsed = parse_job(serialize_job(job));
+  ASSERT_TRUE(parsed) << parsed.error().message;
+  EXPECT_EQ(serialize_job(*parsed), serialize_job(job));
+  EXPECT_EQ(parsed->programs[0].shaders[0].spirv, job.programs[0].shaders[0].spirv);
+  EXPECT_EQ(parsed->programs[0].shaders[0].text, job.programs[0].shaders[0].text);
+  EXPECT_EQ(parsed->textures[0].data, job.textures[0].data);
+  EXPECT_EQ(parsed->textures[0].sampler.address, job.textures[0].sampler.address);
+  EXPECT_EQ(std::get<Draw>(parsed->commands[1]).clear_color, std::get<Draw>(job.commands[1]).clear_color);
+}
+
+TEST(SerializeJob, ShowsAChangeOfAnyField) {
+  const std::vector<std::uint8_t> original = serialize_job(sample_job());
+  for (const Fault& fault : faults) {
+    Job job = sample_job();
+    fault.seed(job);
+    EXPECT_NE(serialize_job(job), original) << fault.sentence;
+  }
+}
+
+TEST(ParseJob, RejectsAnInvalidJob) {
+  for (const Fault& fault : faults) {
+    Job job = sample_job();
+    fault.seed(job);
+    const Result<Job> parsed = parse_job(serialize_job(job));
+    ASSERT_FALSE(parsed) << fault.sentence;
+    EXPECT_EQ(parsed.error().id, "job.parse");
+  }
+}
+
+TEST(ParseJob, RejectsTruncationAtEveryLength) {
+  const std::vector<std::uint8_t> whole = serialize_job(sample_job());
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const Result<Job> parsed = parse_job({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)});
+    ASSERT_FALSE(parsed) << length;
+    EXPECT_EQ(parsed.error().id, "job.parse");
+  }
+}
+
+TEST(ParseJob, RejectsBytesAfterTheEnd) {
+  std::vector<std::uint8_t> longer = serialize_job(sample_job());
+  longer.push_back(0);
+  EXPECT_FALSE(parse_job(longer));
+}
+
+TEST(ParseJob, YieldsOnlyValidJobsFromFlippedBytes) {
+  const std::vector<std::uint8_t> whole = serialize_job(sample_job());
+  int rejected = 0;
+  for (std::size_t position = 0; position < whole.size(); ++position) {
+    for (const int flip : {0x01, 0x20, 0x80, 0xff}) {
+      std::vector<std::uint8_t> flipped = whole;
+      flipped[position] = static_cast<std::uint8_t>(flipped[position] ^ flip);
+      const Result<Job> parsed = parse_job(flipped);
+      rejected += !parsed;
+      EXPECT_TRUE(!parsed || validate_job(*parsed));
+    }
+  }
+  EXPECT_GT(rejected, static_cast<int>(whole.size()));
+}
+
+TEST(ParseJob, RejectsDeepNesting) {
+  EXPECT_FALSE(parse_job(std::vector<std::uint8_t>(10'000'000, 0x81)));
+  EXPECT_FALSE(parse_job(std::vector<std::uint8_t>(10'000'000, 0x9f)));
+}
+
+TEST(ParseJob, RejectsLengthsBeyondMemory) {
+  for (const std::uint8_t kind : {0x9b, 0xbb, 0x5b, 0x7b}) {
+    EXPECT_FALSE(parse_job({kind, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff}));
+    EXPECT_FALSE(parse_job({kind, 0x00, 0x00, 0x00, 0xff, 0xff, 0xff, 0xff, 0xff}));
+  }
+}
+
+TEST(ParseJob, RejectsAnotherSchemaVersion) {
+  std::vector<std::uint8_t> bytes_of_job = serialize_job(sample_job());
+  const std::string key = "relievo_job";
+  auto version = std::search(bytes_of_job.begin(), bytes_of_job.end(), key.begin(), key.end()) +
+                 static_cast<std::ptrdiff_t>(key.size());
+  ASSERT_EQ(*version, 1);
+  *version = 2;
+  const Result<Job> parsed = parse_job(bytes_of_job);
+  ASSERT_FALSE(parsed);
+  EXPECT_THAT(parsed.error().message, HasSubstr("schema version"));
+}
+
+}  // namespace
+}  // namespace relievo

@@ -1,0 +1,26 @@
+/// The Job's formats and sampler state in OpenGL's words.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include "relievo/job.hpp"
+
+namespace relievo::opengl {
+
+/// `external` and `type` describe the Job's tightly packed bytes; `internal` is the texture's own format.
+struct GlFormat {
+  GLenum internal = 0, external = 0, type = 0;
+};
+
+GlFormat gl_format(Format format);
+/// Integer texels: the shader reads them with a usampler, and they are not filtered.
+bool is_integer(Format format);
+/// The framebuffer can have it as a color target, the image units as a storage texture; three channels are neither.
+bool is_color_renderable(Format format);
+bool is_storage_format(Format format);
+
+GLenum min_filter(const SamplerState& state, Format format);
+GLenum mag_filter(const SamplerState& state, Format format);
+GLenum wrap_mode(TexelAddress address);
+
+}  // namespace relievo::opengl

@@ -1,0 +1,20 @@
+#include "common.hpp"
+
+int main(int argc, char** argv) {
+  using namespace relievo::cli;
+  CLI::App app{"Displacement-mapping techniques: compiled for every target, run on several APIs, measured against an exact oracle", "relievo"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", std::string("relievo ") + RELIEVO_VERSION);
+  Context context;
+  for (auto add : {add_list, add_describe, add_compile, add_bake, add_trace, add_render, add_bench, add_conform, add_report}) {
+    add(app, context);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 1;
+  } catch (const std::exception& error) {
+    context.report({relievo::ErrorCode::io, "cli.failure", error.what()});
+  }
+  return context.exit_code;
+}

@@ -23,6 +23,8 @@ struct AxisWalk {
   double crossing(double n) const {
     return n < lines ? (distance + n) * inverse : std::numeric_limits<double>::infinity();
   }
+  /// τ at which the last of n lines was crossed; 0 before the first.
+  double entry(double n) const { return n > 0 ? (distance + (n - 1)) * inverse : 0; }
   /// Position in [0,1] across the cell that the ray is in after n lines.
   double local(double n, double tau) const { return std::clamp(local_start - step * n + direction * tau, 0.0, 1.0); }
   /// The cell after `cell`. Only a periodic axis has one beyond the last.

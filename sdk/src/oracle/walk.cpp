@@ -9,6 +9,8 @@
 namespace relievo::oracle {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 /// Far above the rounding of a height computed either way (some 10⁻¹⁶), so that what is passed over cannot matter.
 constexpr double rounding_margin = 1e-12;
 
@@ -36,6 +38,7 @@ class Walk {
         segment_(segment),
         x_(make_axis_walk(lattice.x(), segment.x, segment.dx)),
         y_(make_axis_walk(lattice.y(), segment.y, segment.dy)),
+        tau_per_height_(segment.dh < 0 ? -1 / segment.dh : 0),
         ambiguity_(options.ambiguity > 0 ? options.ambiguity : 0.0),
         budget_(std::min(static_cast<double>(options.max_cells), largest_cell_budget)) {
     cursor_.cell_x = x_.first_cell;
@@ -57,6 +60,7 @@ class Walk {
     return {std::min(at_x, at_y), at_x <= at_y};
   }
   void step(Cursor& cursor, const Leave& leave) const;
+  double clear_until(double highest) const;
   bool pass_over_block(int level);
   bool visit_cell();
   Clearance clearance(const Cursor& cursor, const Corners& corners) const;
@@ -68,6 +72,7 @@ class Walk {
   const MaxPyramid* pyramid_;
   const Segment& segment_;
   const AxisWalk x_, y_;
+  const double tau_per_height_;
   const double ambiguity_, budget_;
   Cursor cursor_;
   bool ambiguous_ = false;
@@ -96,30 +101,38 @@ int Walk::level_after(const Cursor& before, int level) const {
   return same_parent ? level : level + 1;
 }
 
-/// Moves the cursor to where a walk by cells would leave the block, when the ray stays clear of all of it. A block that
-/// would take the walk beyond its budget or its end is left to the finer levels.
+/// τ until which the ray is certain to stay clear of everything up to `highest`, given that it is where the cursor is.
+double Walk::clear_until(double highest) const {
+  const double needed = highest + ambiguity_ + rounding_margin;
+  if (segment_.height(cursor_.tau) <= needed) return cursor_.tau;
+  return segment_.dh < 0 ? (segment_.h - needed) * tau_per_height_ : infinity;
+}
+
+/// Passes over a block that stays below the ray, and returns true. Where the ray comes down into the block's heights,
+/// goes only that far, and leaves the rest to the finer levels; so does a block in which the walk ends. Wherever the
+/// cursor comes to stand, a walk by cells would have stood there too.
 bool Walk::pass_over_block(int level) {
+  const double clear = clear_until(pyramid_->max_over_block(level, cursor_.cell_x, cursor_.cell_y));
+  if (clear <= cursor_.tau) return false;
   const double last_x = x_.last_line_of_block(level, cursor_.cell_x, cursor_.lines_x);
   const double last_y = y_.last_line_of_block(level, cursor_.cell_y, cursor_.lines_y);
   const Leave out = leave(last_x, last_y);
-  if (out.tau >= segment_.end) return false;
-  const double lowest = segment_.height(segment_.dh < 0 ? out.tau : cursor_.tau);
-  if (lowest <= pyramid_->max_over_block(level, cursor_.cell_x, cursor_.cell_y) + ambiguity_ + rounding_margin)
-    return false;
+  const bool passes = clear > out.tau && out.tau < segment_.end;
+  const double until = passes ? out.tau : std::min(clear, segment_.end);
+  if (until == infinity) return false;
+  // Of lines crossed at the same time, those along x come first: a passage through x precedes its equals along y.
   Cursor next = cursor_;
-  if (out.through_x) {
-    next.lines_x = last_x;
-    next.lines_y = y_.lines_before(out.tau, false, cursor_.lines_y, last_y);
-  } else {
-    next.lines_x = x_.lines_before(out.tau, true, cursor_.lines_x, last_x);
-    next.lines_y = last_y;
-  }
+  next.lines_x = passes && out.through_x ? last_x : x_.lines_before(until, true, cursor_.lines_x, last_x);
+  next.lines_y = passes && !out.through_x ? last_y : y_.lines_before(until, !passes, cursor_.lines_y, last_y);
   if (next.cells_crossed() + 1 >= budget_) return false;
   next.cell_x += x_.step * static_cast<int>(next.lines_x - cursor_.lines_x);
   next.cell_y += y_.step * static_cast<int>(next.lines_y - cursor_.lines_y);
-  step(next, out);
+  if (passes)
+    step(next, out);
+  else
+    next.tau = std::max({cursor_.tau, x_.entry(next.lines_x), y_.entry(next.lines_y)});
   cursor_ = next;
-  return true;
+  return passes;
 }
 
 Clearance Walk::clearance(const Cursor& at, const Corners& corners) const {

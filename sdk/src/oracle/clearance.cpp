@@ -24,11 +24,11 @@ double smallest_positive_root(const Clearance& c, double disc) {
 
 }  // namespace
 
-std::optional<double> Clearance::first_root(double length) const {
+std::optional<double> Clearance::first_root(double length, double at_end) const {
   if (c0 <= 0) return 0.0;
   // The signs at the ends decide where there is one crossing; rounding in the root can then only move it within the
   // cell.
-  if (at(length) <= 0) {
+  if (at_end <= 0) {
     const double s = smallest_positive_root(*this, discriminant(*this));
     return s >= 0 && s <= length ? s : length;
   }

@@ -175,8 +175,8 @@ std::variant<Segment, Hit> make_segment(const Lattice& lattice, const Ray& ray) 
   const double height_at_entry = scaled.h + scaled.dh * limits.begin();
   if (lid == infinity || (scaled.dh > 0 && height_at_entry > 1)) return stop(HitStatus::miss, limits.begin());
   const double start = std::max(limits.begin(), lid);
-  if (start > scaled.t_max) return stop(HitStatus::miss, scaled.t_max);
-  if (start > limits.end()) return stop(HitStatus::outside, limits.end());
+  if (start > std::min(scaled.t_max, limits.end()))
+    return scaled.t_max <= limits.end() ? stop(HitStatus::miss, scaled.t_max) : stop(HitStatus::outside, limits.end());
   Segment segment = segment_from(lattice, scaled, start, limits);
   segment.t_per_tau = t_per_tau;
   segment.t_start = start * t_per_tau;

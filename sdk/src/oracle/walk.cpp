@@ -152,7 +152,9 @@ bool Walk::visit_cell() {
   ++visited_;
   if (lowest <= corners.max() + ambiguity_ + rounding_margin) {
     const Clearance c = clearance(cursor_, corners);
-    std::optional<double> s = c.first_root(length);
+    const double at_end =
+        clearance_at(corners, x_.local(cursor_.lines_x, end), y_.local(cursor_.lines_y, end), segment_.height(end));
+    std::optional<double> s = c.first_root(length, at_end);
     if (!s && last && segment_.at_end == HitStatus::hit) s = length;
     ambiguous_ = ambiguous_ || c.turns_away_within(ambiguity_, s.value_or(length));
     if (s) {
@@ -161,7 +163,7 @@ bool Walk::visit_cell() {
       ambiguous_ = ambiguous_ || is_near_tangent_hit(cursor_, *s);
       return true;
     }
-    if (last) ambiguous_ = ambiguous_ || c.at(length) <= ambiguity_;
+    if (last) ambiguous_ = ambiguous_ || at_end <= ambiguity_;
   }
   if (last) {
     stop(segment_.at_end, end);

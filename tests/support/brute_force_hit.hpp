@@ -26,6 +26,15 @@ class BruteForce {
   /// For rays with finite numbers, a direction, and an end: slanted, or with t_max, or leaving a clip map.
   BruteForceHit trace(const Ray& ray, Real ambiguity = 1e-5L) const;
   Real clearance(const Ray& ray, Real t) const { return height(ray, t) - surface(x(ray, t), y(ray, t)); }
+  /// Bilinear height at texel coordinates.
+  Real surface(Real px, Real py) const {
+    return patch(static_cast<long long>(std::floor(px)), static_cast<long long>(std::floor(py)), px, py);
+  }
+  /// h00 − h10 − h01 + h11 of the cell at texel coordinates.
+  Real twist(Real px, Real py) const {
+    const auto i = static_cast<long long>(std::floor(px)), j = static_cast<long long>(std::floor(py));
+    return texel(i, j) - texel(i + 1, j) - texel(i, j + 1) + texel(i + 1, j + 1);
+  }
 
  private:
   struct Range {
@@ -59,9 +68,6 @@ class BruteForce {
     const Real a = px - Real(i), b = py - Real(j);
     const Real low = texel(i, j) * (1 - a) + texel(i + 1, j) * a;
     return low * (1 - b) + (texel(i, j + 1) * (1 - a) + texel(i + 1, j + 1) * a) * b;
-  }
-  Real surface(Real px, Real py) const {
-    return patch(static_cast<long long>(std::floor(px)), static_cast<long long>(std::floor(py)), px, py);
   }
 
   Range range_of(const Ray& ray) const;

@@ -94,6 +94,8 @@ struct Registry {
   std::map<std::string, MapDescriptor, std::less<>> maps;
   std::map<std::string, StageDescriptor, std::less<>> stages;
   SourceTree sources;
+  /// Where the sources that came from a user's folder lie on disk, by source path: what diagnostics should name.
+  std::map<std::string, std::string, std::less<>> origins;
 
   /// Look-ups by name; the error ("describe.unknown-technique", …) names the nearest known name.
   Result<const TechniqueDescriptor*> technique(std::string_view name) const;

@@ -9,23 +9,27 @@ namespace relievo {
 
 namespace {
 
-std::string title(const Mesh& mesh) { return mesh.name.empty() ? "the mesh" : fmt::format("mesh '{}'", mesh.name); }
+std::string title(const Mesh& mesh) {
+  return mesh.name.empty() ? "the mesh" : fmt::format("mesh '{}'", mesh.name);
+}
 
-Status check_counts(const Mesh& mesh) {
+Status check_counts(const Mesh& mesh, bool needs_uvs) {
   const std::size_t vertices = mesh.positions.size();
   if (vertices == 0 || mesh.triangles.empty()) {
     return fail(ErrorCode::io, "mesh.empty",
-                fmt::format("{} has {} vertices and {} triangles; at least one triangle is expected", title(mesh), vertices,
-                            mesh.triangles.size()));
+                fmt::format("{} has {} vertices and {} triangles; at least one triangle is expected", title(mesh),
+                            vertices, mesh.triangles.size()));
   }
-  if (mesh.uvs.empty()) {
+  if (mesh.uvs.empty() && needs_uvs) {
     return fail(ErrorCode::io, "mesh.uv",
-                fmt::format("{} has no texture coordinates; a height map needs them (uv = \"spherical\" makes some)", title(mesh)));
+                fmt::format("{} has no texture coordinates; a height map needs them (uv = \"spherical\" makes some)",
+                            title(mesh)));
   }
-  if (mesh.uvs.size() != vertices || (!mesh.normals.empty() && mesh.normals.size() != vertices)) {
+  if ((!mesh.uvs.empty() && mesh.uvs.size() != vertices) ||
+      (!mesh.normals.empty() && mesh.normals.size() != vertices)) {
     return fail(ErrorCode::io, "mesh.counts",
-                fmt::format("{} has {} positions, {} normals and {} texture coordinates; as many of each are expected", title(mesh),
-                            vertices, mesh.normals.size(), mesh.uvs.size()));
+                fmt::format("{} has {} positions, {} normals and {} texture coordinates; as many of each are expected",
+                            title(mesh), vertices, mesh.normals.size(), mesh.uvs.size()));
   }
   return {};
 }
@@ -49,15 +53,16 @@ Status check_indices(const Mesh& mesh) {
     const std::uint32_t largest = *std::max_element(triangle.begin(), triangle.end());
     if (largest < mesh.positions.size()) continue;
     return fail(ErrorCode::io, "mesh.index",
-                fmt::format("{} has vertex {} in triangle {}; below {} is expected", title(mesh), largest, t, mesh.positions.size()));
+                fmt::format("{} has vertex {} in triangle {}; below {} is expected", title(mesh), largest, t,
+                            mesh.positions.size()));
   }
   return {};
 }
 
 }  // namespace
 
-Result<MeshReport> check_mesh(const Mesh& mesh) {
-  if (auto counts = check_counts(mesh); !counts) return tl::unexpected(counts.error());
+Result<MeshReport> check_mesh(const Mesh& mesh, bool needs_uvs) {
+  if (auto counts = check_counts(mesh, needs_uvs); !counts) return tl::unexpected(counts.error());
   if (auto finite = check_finite(mesh, mesh.positions, "position"); !finite) return tl::unexpected(finite.error());
   if (auto finite = check_finite(mesh, mesh.normals, "normal"); !finite) return tl::unexpected(finite.error());
   if (auto finite = check_finite(mesh, mesh.uvs, "texture coordinate"); !finite) return tl::unexpected(finite.error());
@@ -68,7 +73,7 @@ Result<MeshReport> check_mesh(const Mesh& mesh) {
     const TriangleEdges edges = triangle_edges(mesh, triangle);
     if (!has_area(edges)) {
       ++report.degenerate_triangles;
-    } else if (!has_uv_area(edges)) {
+    } else if (!mesh.uvs.empty() && !has_uv_area(edges)) {
       ++report.degenerate_uvs;
     }
   }

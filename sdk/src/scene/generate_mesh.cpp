@@ -62,15 +62,14 @@ Mesh make_sphere(float radius, int slices, int stacks) {
   const auto vertex_at = [=](double u, glm::dvec2 direction, int j) {
     const double latitude = std::numbers::pi * (static_cast<double>(j) / stacks - 0.5);
     const bool pole = j == 0 || j == stacks;
-    const glm::dvec3 normal = pole ? glm::dvec3(0, 0, j == 0 ? -1 : 1)
-                                   : glm::dvec3(direction * std::cos(latitude), std::sin(latitude));
+    const glm::dvec3 normal =
+        pole ? glm::dvec3(0, 0, j == 0 ? -1 : 1) : glm::dvec3(direction * std::cos(latitude), std::sin(latitude));
     return Vertex{normal * static_cast<double>(radius), normal, {u, static_cast<double>(j) / stacks}};
   };
   Mesh mesh;
   mesh.name = "sphere";
-  add_grid(mesh, slices, stacks - 2, [&](int i, int j) {
-    return vertex_at(static_cast<double>(i) / slices, around(i, slices), j + 1);
-  });
+  add_grid(mesh, slices, stacks - 2,
+           [&](int i, int j) { return vertex_at(static_cast<double>(i) / slices, around(i, slices), j + 1); });
   const std::uint32_t last_ring = static_cast<std::uint32_t>(stacks - 2) * static_cast<std::uint32_t>(slices + 1);
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(slices); ++i) {
     const double u = (i + 0.5) / slices;

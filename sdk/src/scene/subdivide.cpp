@@ -1,5 +1,5 @@
-#include <algorithm>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "relievo/mesh.hpp"
@@ -17,9 +17,11 @@ struct Corner {
 
 class Subdivider {
  public:
-  Subdivider(const Mesh& coarse, int factor) : coarse_(coarse), factor_(factor), weld_(weld_positions(coarse)), fine_(coarse) {
+  Subdivider(const Mesh& coarse, int factor)
+      : coarse_(coarse), factor_(factor), weld_(weld_positions(coarse)), fine_(coarse) {
     fine_.triangles.clear();
-    fine_.triangles.reserve(coarse.triangles.size() * static_cast<std::size_t>(factor) * static_cast<std::size_t>(factor));
+    fine_.triangles.reserve(coarse.triangles.size() * static_cast<std::size_t>(factor) *
+                            static_cast<std::size_t>(factor));
   }
 
   Mesh run() {
@@ -33,7 +35,8 @@ class Subdivider {
     std::vector<std::uint32_t> above = {triangle[0]};
     for (int row = 1; row <= factor_; ++row) {
       std::vector<std::uint32_t> points;
-      for (int k = 0; k <= row; ++k) points.push_back(point({{{triangle[0], factor_ - row}, {triangle[1], row - k}, {triangle[2], k}}}));
+      for (int k = 0; k <= row; ++k)
+        points.push_back(point({{{triangle[0], factor_ - row}, {triangle[1], row - k}, {triangle[2], k}}}));
       for (std::size_t k = 0; k < above.size(); ++k) {
         fine_.triangles.push_back({above[k], points[k], points[k + 1]});
         if (k + 1 < above.size()) fine_.triangles.push_back({above[k], points[k + 1], above[k + 1]});
@@ -42,17 +45,17 @@ class Subdivider {
     }
   }
 
-  std::uint32_t point(std::array<Corner, 3> corners) {
-    std::array<Corner, 3> used = {};
-    std::size_t count = 0;
-    for (const Corner& corner : corners) {
-      if (corner.weight > 0) used[count++] = corner;
-    }
+  std::uint32_t point(std::array<Corner, 3> used) {
+    const auto rank = [&](const Corner& c) { return std::tuple(c.weight == 0, weld_[c.vertex], c.vertex); };
+    // Both triangles at an edge sum in this order, so that they round to the same point. Unused corners come last.
+    const auto order = [&](Corner& a, Corner& b) {
+      if (rank(b) < rank(a)) std::swap(a, b);
+    };
+    order(used[0], used[1]);
+    order(used[1], used[2]);
+    order(used[0], used[1]);
+    const std::size_t count = used[1].weight == 0 ? 1 : used[2].weight == 0 ? 2 : 3;
     if (count == 1) return used[0].vertex;
-    // Both triangles at an edge sum in this order, so that they round to the same point.
-    std::sort(used.begin(), used.begin() + static_cast<std::ptrdiff_t>(count), [&](const Corner& a, const Corner& b) {
-      return std::pair(weld_[a.vertex], a.vertex) < std::pair(weld_[b.vertex], b.vertex);
-    });
     if (count == 3) return add(used, count);
     const auto key = std::array{used[0].vertex, used[1].vertex, static_cast<std::uint32_t>(used[1].weight)};
     const auto [found, is_new] = edge_points_.try_emplace(key, 0);
@@ -61,8 +64,8 @@ class Subdivider {
   }
 
   template <std::size_t N>
-  void append(std::vector<std::array<float, N>>& to, const std::vector<std::array<float, N>>& from, const std::array<Corner, 3>& used,
-              std::size_t count) {
+  void append(std::vector<std::array<float, N>>& to, const std::vector<std::array<float, N>>& from,
+              const std::array<Corner, 3>& used, std::size_t count) {
     if (from.empty()) return;
     std::array<float, N> value;
     for (std::size_t axis = 0; axis < N; ++axis) {
@@ -89,6 +92,8 @@ class Subdivider {
 
 }  // namespace
 
-Mesh subdivide(const Mesh& mesh, int factor) { return factor <= 1 ? mesh : Subdivider(mesh, factor).run(); }
+Mesh subdivide(const Mesh& mesh, int factor) {
+  return factor <= 1 ? mesh : Subdivider(mesh, factor).run();
+}
 
 }  // namespace relievo

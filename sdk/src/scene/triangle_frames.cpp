@@ -10,7 +10,9 @@ namespace {
 /// Twice a triangle's area over its longest edge squared; below this, rounding decides its shape.
 constexpr double flatness = 1e-12;
 
-bool is_finite(const std::array<float, 3>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+bool is_finite(const std::array<float, 3>& v) {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
 
 /// Survey Eq. 5 solved by Cramer's rule; both denominators there are the same but for the sign.
 TriangleFrame frame_of(const TriangleEdges& e) {

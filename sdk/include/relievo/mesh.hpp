@@ -42,8 +42,9 @@ struct MeshReport {
 };
 
 /// Validates what everything else relies on. Errors ("mesh.empty", "mesh.counts", "mesh.index", "mesh.non-finite",
-/// "mesh.uv") name the mesh and the vertex or triangle. Missing normals are allowed: `weld_normals` makes them.
-Result<MeshReport> check_mesh(const Mesh& mesh);
+/// "mesh.uv") name the mesh and the vertex or triangle. Missing normals are allowed, `weld_normals` makes them; missing
+/// texture coordinates are where `needs_uvs` is false, for `project_spherical_uvs` (degenerate_uvs then stays 0).
+Result<MeshReport> check_mesh(const Mesh& mesh, bool needs_uvs = true);
 
 /// Cuts every triangle into factor² by linear interpolation of position, normal and uv. The normal is not renormalised:
 /// displaced vertices then lie on the surface that the prisms of the coarse triangles describe.

@@ -92,11 +92,11 @@ Result<Scene> load_scene(const std::filesystem::path& path);
 /// As above from text; `file` is used in messages, and relative paths resolve against its folder.
 Result<Scene> parse_scene(std::string_view text, const std::filesystem::path& file);
 
-/// Reads a mesh file; with `spherical` the file needs no texture coordinates.
-using MeshLoader = std::function<Result<Mesh>(const std::filesystem::path& path, UvSource uv)>;
+/// Reads a mesh file, with or without texture coordinates and normals.
+using MeshLoader = std::function<Result<Mesh>(const std::filesystem::path& path)>;
 
-/// The scene's mesh, checked, with its uv_scale applied and one normal a position. The library reads no mesh files:
-/// kind `file` needs a `loader`, else the error is "scene.mesh-loader".
+/// The scene's mesh, checked, with its uv source and uv_scale applied and one normal a position. The library reads no
+/// mesh files: kind `file` needs a `loader`, else the error is "scene.mesh-loader".
 Result<Mesh> scene_mesh(const Scene& scene, const MeshLoader& loader = {});
 
 /// The scene's height map with its address mode; a flat one (a single texel, 0) when none is named.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "relievo/image.hpp"
 #include "relievo/result.hpp"
@@ -37,6 +38,10 @@ Status check_extent(const ImageSource& source, std::int64_t width, std::int64_t 
 
 /// Every chunk of a PNG is whole and has its checksum: stb checks neither.
 Status check_png(const ImageSource& source);
+
+/// Run-length BMPs, which stb does not read: rewritten as the same BMP without compression.
+bool is_run_length_bmp(Bytes bytes);
+Result<std::vector<std::uint8_t>> expand_bmp(const ImageSource& source);
 
 bool is_gzip(Bytes bytes);
 /// Unpacks a gzip file. Errors: "image.truncated", "image.corrupt", and "image.size" beyond what an image may need.

@@ -56,6 +56,11 @@ Result<DecodedImage> decode_image(const ImageSource& source) {
   }
   if (starts_with(bytes, "\x76\x2f\x31\x01")) return decode_exr(source);
   if (starts_with(bytes, "PF") || starts_with(bytes, "Pf")) return decode_pfm(source);
+  if (is_run_length_bmp(bytes)) {
+    const auto expanded = expand_bmp(source);
+    if (!expanded) return tl::unexpected(expanded.error());
+    return decode_stb({source.path, *expanded});
+  }
   if (starts_with(bytes, "BM") || starts_with(bytes, "\xff\xd8\xff") || starts_with(bytes, "#?") ||
       is_named_tga(source.path)) {
     return decode_stb(source);

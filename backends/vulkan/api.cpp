@@ -1,4 +1,12 @@
+#include <dlfcn.h>
+
+// Ours alone: a program that uses volk too has its own.
+#pragma GCC visibility push(hidden)
+#define VK_NO_PROTOTYPES
 #define VOLK_IMPLEMENTATION
+#include <volk.h>
+#pragma GCC visibility pop
+
 #include "api.hpp"
 
 namespace relievo::vulkan {

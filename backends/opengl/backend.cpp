@@ -15,11 +15,6 @@ namespace relievo {
 namespace opengl {
 namespace {
 
-std::string gl_string(GLenum name) {
-  const auto* text = reinterpret_cast<const char*>(glGetString(name));
-  return text != nullptr ? text : "unknown";
-}
-
 BackendInfo named_info() {
   BackendInfo info;
   info.name = "opengl";

@@ -63,4 +63,7 @@ class CurrentContext {
   Status status_;
 };
 
+/// glGetString of the current context; empty where it has none.
+std::string gl_string(GLenum name);
+
 }  // namespace relievo::opengl

@@ -54,8 +54,7 @@ Result<std::unique_ptr<Display>> Display::open(EGLDisplay handle, const std::str
     use.ours = eglQueryString(handle, EGL_VERSION) == nullptr;
     if (!eglInitialize(handle, nullptr, nullptr)) {
       return fail(ErrorCode::unsupported, "backend.unavailable",
-                  fmt::format("no EGL driver works on the {} display: eglInitialize gives {}", label,
-                              egl_error_name(eglGetError())));
+                  fmt::format("on the {} display, eglInitialize gives {}", label, egl_error_name(eglGetError())));
     }
   }
   ++use.count;

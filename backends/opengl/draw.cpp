@@ -10,26 +10,17 @@
 namespace relievo::opengl {
 namespace {
 
-void attach(GLuint framebuffer, GLenum point, const Texture& texture, GLuint name) {
-  if (texture.is_3d || texture.depth > 1) {
-    glNamedFramebufferTextureLayer(framebuffer, point, name, 0, 0);
-  } else {
-    glNamedFramebufferTexture(framebuffer, point, name, 0);
-  }
-}
-
-Result<FramebufferHandle> make_framebuffer(const Job& job, const Resources& resources, const Draw& draw) {
+Result<FramebufferHandle> make_framebuffer(const Resources& resources, const Draw& draw) {
   GLuint name = 0;
   glCreateFramebuffers(1, &name);
   FramebufferHandle framebuffer(name);
   std::vector<GLenum> buffers;
   for (const int target : draw.color_targets) {
     buffers.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(buffers.size()));
-    attach(name, buffers.back(), job.textures[target], resources.textures[target].handle.get());
+    glNamedFramebufferTexture(name, buffers.back(), resources.textures[target].handle.get(), 0);
   }
   if (draw.depth_target >= 0) {
-    attach(name, GL_DEPTH_ATTACHMENT, job.textures[draw.depth_target],
-           resources.textures[draw.depth_target].handle.get());
+    glNamedFramebufferTexture(name, GL_DEPTH_ATTACHMENT, resources.textures[draw.depth_target].handle.get(), 0);
   }
   glNamedFramebufferDrawBuffers(name, static_cast<GLsizei>(buffers.size()), buffers.data());
   const GLenum status = glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER);
@@ -40,11 +31,18 @@ Result<FramebufferHandle> make_framebuffer(const Job& job, const Resources& reso
                           status));
 }
 
+/// The nearest value that an unsigned integer has.
+GLuint to_uint(float value) {
+  constexpr float first_too_large = 4294967296.0f;
+  if (value <= 0) return 0;
+  return value < first_too_large ? static_cast<GLuint>(value) : ~GLuint{0};
+}
+
 void clear_targets(const Job& job, GLuint framebuffer, const Draw& draw) {
   for (int i = 0; draw.clear_color && i < static_cast<int>(draw.color_targets.size()); ++i) {
     const auto& color = *draw.clear_color;
     if (is_integer(job.textures[draw.color_targets[i]].format)) {
-      const GLuint value[4] = {static_cast<GLuint>(color[0]), 0, 0, 0};
+      const GLuint value[4] = {to_uint(color[0]), 0, 0, 0};
       glClearNamedFramebufferuiv(framebuffer, GL_COLOR, i, value);
     } else {
       glClearNamedFramebufferfv(framebuffer, GL_COLOR, i, color.data());
@@ -67,7 +65,7 @@ VertexArrayHandle make_vertex_array(const Resources& resources, const Draw& draw
     if (is_integer(attribute.format)) {
       glVertexArrayAttribIFormat(name, location, channel_count(attribute.format), type, offset);
     } else {
-      glVertexArrayAttribFormat(name, location, channel_count(attribute.format), type, GL_TRUE, offset);
+      glVertexArrayAttribFormat(name, location, channel_count(attribute.format), type, GL_FALSE, offset);
     }
   }
   if (!draw.attributes.empty()) {
@@ -118,7 +116,7 @@ void draw_primitives(const Program& program, const Draw& draw) {
 }  // namespace
 
 Status run_draw(const Job& job, const Resources& resources, const Program& program, const Draw& draw) {
-  const auto framebuffer = make_framebuffer(job, resources, draw);
+  const auto framebuffer = make_framebuffer(resources, draw);
   if (!framebuffer) return tl::unexpected(framebuffer.error());
   const VertexArrayHandle vertex_array = make_vertex_array(resources, draw);
   const int target = draw.color_targets.empty() ? draw.depth_target : draw.color_targets.front();

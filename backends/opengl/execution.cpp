@@ -41,6 +41,7 @@ Status run_command(const Job& job, const std::vector<Program>& programs, const R
   auto status = dispatch != nullptr ? run_dispatch(*dispatch) : run_draw(job, resources, programs[index], *draw);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
   timers.end_command();
+  glUseProgram(0);  // a program in use is not deleted
   return status;
 }
 

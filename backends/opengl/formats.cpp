@@ -40,14 +40,6 @@ bool is_integer(Format format) {
   return format == Format::r32_uint;
 }
 
-bool is_color_renderable(Format format) {
-  return channel_count(format) != 3 && format != Format::d32_float;
-}
-
-bool is_storage_format(Format format) {
-  return is_color_renderable(format);
-}
-
 GLenum min_filter(const SamplerState& state, Format format) {
   // OpenGL calls an integer texture with a linear filter incomplete and reads zeros, so these are always nearest.
   if (is_integer(format)) return GL_NEAREST_MIPMAP_NEAREST;

@@ -15,9 +15,6 @@ struct GlFormat {
 GlFormat gl_format(Format format);
 /// Integer texels: the shader reads them with a usampler, and they are not filtered.
 bool is_integer(Format format);
-/// The framebuffer can have it as a color target, the image units as a storage texture; three channels are neither.
-bool is_color_renderable(Format format);
-bool is_storage_format(Format format);
 
 GLenum min_filter(const SamplerState& state, Format format);
 GLenum mag_filter(const SamplerState& state, Format format);

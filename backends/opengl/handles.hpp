@@ -26,31 +26,14 @@ class Handle {
  private:
   GLuint name_ = 0;
 };
-
-inline void delete_buffer(GLuint name) {
-  glDeleteBuffers(1, &name);
-}
-inline void delete_texture(GLuint name) {
-  glDeleteTextures(1, &name);
-}
-inline void delete_sampler(GLuint name) {
-  glDeleteSamplers(1, &name);
-}
-inline void delete_framebuffer(GLuint name) {
-  glDeleteFramebuffers(1, &name);
-}
-inline void delete_vertex_array(GLuint name) {
-  glDeleteVertexArrays(1, &name);
-}
-inline void delete_query(GLuint name) {
-  glDeleteQueries(1, &name);
-}
-inline void delete_shader(GLuint name) {
-  glDeleteShader(name);
-}
-inline void delete_program(GLuint name) {
-  glDeleteProgram(name);
-}
+void delete_buffer(GLuint name);
+void delete_texture(GLuint name);
+void delete_sampler(GLuint name);
+void delete_framebuffer(GLuint name);
+void delete_vertex_array(GLuint name);
+void delete_query(GLuint name);
+void delete_shader(GLuint name);
+void delete_program(GLuint name);
 
 using BufferHandle = Handle<delete_buffer>;
 using TextureHandle = Handle<delete_texture>;

@@ -8,8 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "formats.hpp"
-
 namespace relievo::opengl {
 namespace {
 
@@ -68,11 +66,6 @@ Status check_bound(const Job& job, const BindingSlot& slot, int resource, const 
   };
   if (slot.kind == ResourceKind::uniform_buffer) return block(limits.uniform_block_size);
   if (slot.kind == ResourceKind::storage_buffer) return block(limits.storage_block_size);
-  if (slot.kind == ResourceKind::storage_texture && !is_storage_format(job.textures[resource].format)) {
-    return fail(ErrorCode::unsupported, "backend.format",
-                fmt::format("storage texture '{}' has format {}; OpenGL needs a color format of 1, 2 or 4 channels",
-                            job.textures[resource].name, to_string(job.textures[resource].format)));
-  }
   return {};
 }
 
@@ -98,17 +91,9 @@ Status check_dispatch(const Job& job, const Dispatch& dispatch, const Limits& li
 }
 
 Status check_draw(const Job& job, const Draw& draw, const Limits& limits) {
-  auto status = at_most("the number of color targets", static_cast<std::int64_t>(draw.color_targets.size()),
-                        limits.color_targets);
-  if (!status) return status;
-  for (const int target : draw.color_targets) {
-    if (is_color_renderable(job.textures[target].format)) continue;
-    return fail(ErrorCode::unsupported, "backend.format",
-                fmt::format("color target '{}' has format {}; OpenGL draws to color formats of 1, 2 or 4 channels",
-                            job.textures[target].name, to_string(job.textures[target].format)));
-  }
-  for (const VertexAttribute& attribute : draw.attributes) {
-    status = at_most("the location of a vertex attribute", attribute.location, limits.vertex_attributes - 1);
+  // OpenGL counts both in an int.
+  for (const std::int64_t count : {draw.count, draw.instances}) {
+    auto status = at_most("a draw's count of vertices or instances", count, std::numeric_limits<GLsizei>::max());
     if (!status) return status;
   }
   return check_resources(job, draw.program, draw.resources, limits);
@@ -126,8 +111,6 @@ Limits query_limits() {
   limits.storage_blocks = query(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
   limits.texture_units = query(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS);
   limits.image_units = query(GL_MAX_IMAGE_UNITS);
-  limits.color_targets = std::min(query(GL_MAX_COLOR_ATTACHMENTS), query(GL_MAX_DRAW_BUFFERS));
-  limits.vertex_attributes = query(GL_MAX_VERTEX_ATTRIBS);
   for (GLuint axis = 0; axis < 3; ++axis) {
     glGetInteger64i_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, axis, &limits.work_groups[axis]);
   }

@@ -82,7 +82,7 @@ const FeatureSet& known_features() {
 }
 
 void check_schema(TomlReader& descriptor) {
-  if (!descriptor.has("schema")) return;  // reported as missing after unknown keys, one of which may be its misspelling
+  if (!descriptor.has("schema")) return;
   const int schema = descriptor.integer("schema", 1, std::numeric_limits<int>::max());
   if (schema <= descriptor_schema) return;
   descriptor.report("describe.range",

@@ -77,17 +77,8 @@ std::string_view cut(std::string_view text, std::size_t length) {
   return text.substr(0, length);
 }
 
-}  // namespace
-
-const TomlEntry* find_entry(const TomlValue& table, std::string_view key) {
-  for (const TomlEntry& entry : table.entries) {
-    if (entry.key == key) return &entry;
-  }
-  return nullptr;
-}
-
-std::string quote(std::string_view text) {
-  const std::string_view shown = cut(text, 60);
+std::string quote_start(std::string_view text, std::size_t length) {
+  const std::string_view shown = cut(text, length);
   std::string result = "\"";
   for (const char c : shown) {
     const auto byte = static_cast<unsigned char>(c);
@@ -99,6 +90,23 @@ std::string quote(std::string_view text) {
   }
   if (shown.size() < text.size()) result += "…";
   return result + "\"";
+}
+
+}  // namespace
+
+const TomlEntry* find_entry(const TomlValue& table, std::string_view key) {
+  for (const TomlEntry& entry : table.entries) {
+    if (entry.key == key) return &entry;
+  }
+  return nullptr;
+}
+
+std::string quote(std::string_view text) {
+  return quote_start(text, 60);
+}
+
+std::string quote_path(std::string_view path) {
+  return quote_start(path, 1000);
 }
 
 std::string describe_value(const TomlValue& value) {

@@ -1,0 +1,61 @@
+#include "describe/toml_nesting.hpp"
+
+#include <gtest/gtest.h>
+
+#include "describe/toml_document.hpp"
+#include "unit/describe_examples.hpp"
+
+namespace relievo {
+namespace {
+
+std::string repeat(std::string_view text, int count) {
+  std::string result;
+  for (int i = 0; i < count; ++i) result += text;
+  return result;
+}
+
+TEST(TomlNesting, AcceptsSixteenLevels) {
+  EXPECT_TRUE(check_toml_nesting(repeat("a.", 15) + "a = 1\n", "f"));
+  EXPECT_TRUE(check_toml_nesting("a = " + repeat("[", 16) + repeat("]", 16) + "\n", "f"));
+}
+
+TEST(TomlNesting, RejectsMoreWithItsPlace) {
+  const Status keys = check_toml_nesting(std::string("x = 1\n").append(repeat("a.", 16)) + "a = 1\n", "f.toml");
+  ASSERT_FALSE(keys);
+  EXPECT_EQ(keys.error().file, "f.toml");
+  examples::expect_error(keys.error(), "describe.syntax", 2, 32, "at most 16");
+  const Status brackets = check_toml_nesting("a = " + repeat("[", 17) + repeat("]", 17) + "\n", "f");
+  ASSERT_FALSE(brackets);
+  examples::expect_error(brackets.error(), "describe.syntax", 1, 21, "at most 16");
+  EXPECT_FALSE(check_toml_nesting("a = " + repeat("{a = ", 17), "f"));
+  EXPECT_FALSE(check_toml_nesting(repeat("\"a\" . ", 17) + "a = 1\n", "f"));
+}
+
+TEST(TomlNesting, IgnoresDotsAndBracketsOfStringsAndComments) {
+  const std::string noise = repeat(".[{", 40);
+  for (const std::string& text : {"a = \"" + noise + "\"\n", "a = '" + noise + "'\n", "# " + noise + "\n",
+                                  "a = \"\"\"\n\"" + noise + "\"\"\"\"\n", "a = '''\n" + noise + "'''\n",
+                                  "a = \"\\\"" + noise + "\"\n", "a = \"\" # " + noise + "\n"}) {
+    EXPECT_TRUE(check_toml_nesting(text, "f")) << text;
+    EXPECT_TRUE(parse_toml(text, "f")) << text;
+  }
+}
+
+TEST(TomlNesting, SeesDotsAfterAString) {
+  std::string deep = "\n";
+  deep += repeat("a.", 20) + "a = 1\n";
+  for (const std::string& text : {"b = \"x\"" + deep, "b = ''" + deep, "b = \"\"\"x\"\"\"\"\"" + deep,
+                                  "b = '''x'''" + deep, "b = \"\\\\\"" + deep, "# it's" + deep}) {
+    EXPECT_FALSE(check_toml_nesting(text, "f")) << text;
+  }
+}
+
+TEST(TomlNesting, ProtectsTheParserFromDeepKeys) {
+  const auto deep = parse_toml(repeat("a.", 400000) + "a = 1\n", "f");
+  ASSERT_FALSE(deep);
+  EXPECT_EQ(deep.error().id, "describe.syntax");
+  EXPECT_EQ(parse_toml(std::string((1 << 20) + 1, ' '), "f").error().id, "describe.syntax");
+}
+
+}  // namespace
+}  // namespace relievo

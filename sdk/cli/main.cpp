@@ -6,7 +6,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("relievo ") + RELIEVO_VERSION);
   Context context;
-  for (auto add : {add_list, add_describe, add_compile, add_bake, add_trace, add_render, add_bench, add_conform, add_report}) {
+  for (auto add : {add_list, add_describe, add_compile, add_bake, add_trace, add_render, add_bench}) {
     add(app, context);
   }
   try {
@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 1;
   } catch (const std::exception& error) {
-    context.report({relievo::ErrorCode::io, "cli.failure", error.what()});
+    context.report({relievo::ErrorCode::io, "cli.failure", error.what(), "", 0, 0});
   }
   return context.exit_code;
 }

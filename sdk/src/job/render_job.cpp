@@ -101,8 +101,12 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
   if ((*stage)->mesh == "none") {
     return fail(ErrorCode::usage, "render.stage", "stage '" + request.stage + "' draws nothing; expected one that has a mesh, such as 'surface'");
   }
-  Permutation permutation{.stage = request.stage, .filter = request.filter, .address = maps.at("height").address,
-                          .aov = request.aov, .values = request.values};
+  Permutation permutation;
+  permutation.stage = request.stage;
+  permutation.filter = request.filter;
+  permutation.address = maps.at("height").address;
+  permutation.aov = request.aov;
+  permutation.values = request.values;
   for (const std::string& role : (*stage)->roles) permutation.roles[role] = request.technique;
   Result<PreparedProgram> prepared = prepare(registry, std::move(permutation), shader_target);
   if (!prepared) return tl::unexpected(prepared.error());

@@ -89,8 +89,13 @@ Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::sp
   job.buffers.push_back(pack_rays(rays, address));
   std::vector<Command> round;
   for (const TraceRequest& request : requests) {
-    Permutation permutation{.stage = "ray", .roles = {{"view", request.technique}}, .filter = request.filter,
-                            .address = address, .count_cost = request.count_cost, .values = request.values};
+    Permutation permutation;
+    permutation.stage = "ray";
+    permutation.roles["view"] = request.technique;
+    permutation.filter = request.filter;
+    permutation.address = address;
+    permutation.count_cost = request.count_cost;
+    permutation.values = request.values;
     Result<PreparedProgram> prepared = prepare(registry, std::move(permutation), shader_target);
     if (!prepared) return tl::unexpected(prepared.error());
     Dispatch dispatch;

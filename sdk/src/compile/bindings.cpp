@@ -102,7 +102,7 @@ Status collect_push_constants(BindingLayout& layout, const ShaderModule& module,
   const spirv_cross::Resource& block = module.resources.push_constant_buffers.front();
   const auto& type = module.reflection->get_type(block.base_type_id);
   PushConstants found;
-  found.name = block.name;
+  found.name = module.reflection->get_name(block.base_type_id);
   found.size = static_cast<int>(module.reflection->get_declared_struct_size(type));
   if (layout.push_constants &&
       (layout.push_constants->name != found.name || layout.push_constants->size != found.size)) {
@@ -159,7 +159,7 @@ class Numbering {
         break;
       case ResourceKind::storage_texture:
         entry.slot.gl_slot = image_unit_.take(n);
-        entry.hlsl.u = u_.take(n);
+        (entry.read_only ? entry.hlsl.t : entry.hlsl.u) = (entry.read_only ? t_ : u_).take(n);
         entry.msl.texture = texture_.take(n);
         break;
     }

@@ -64,7 +64,4 @@ constexpr int kMslBufferSizes = 29;
 /// "compile.binding-kind" for kinds the contract does not know (separate textures, subpass inputs, …).
 Result<BindingLayout> make_binding_layout(std::span<const ShaderModule> modules, std::string_view permutation_key);
 
-/// The first register, binding or index that two resources share in an emitted text; empty when there is none.
-std::string find_binding_collision(Language language, std::string_view text);
-
 }  // namespace relievo

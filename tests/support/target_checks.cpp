@@ -8,6 +8,7 @@
 #include <memory>
 #include <set>
 #include <spirv-tools/libspirv.hpp>
+#include <sstream>
 
 namespace relievo::testing {
 
@@ -49,6 +50,32 @@ std::string validate(const std::vector<std::uint32_t>& words, bool from_hlsl) {
   return messages.empty() ? "invalid SPIR-V" : messages;
 }
 
+/// The user varyings that a text declares with `qualifier`, `in` or `out`.
+std::set<std::string> declared_varyings(const std::string& text, const std::string& qualifier) {
+  std::set<std::string> names;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line) && line.rfind("void ", 0) != 0;) {
+    const std::size_t at = line.find("relievo_");
+    const bool declares = (" " + line).find(" " + qualifier + " ") != std::string::npos;
+    if (at == std::string::npos || !declares || line.find("_out_") == std::string::npos) continue;
+    names.insert(line.substr(at, line.find_first_of("[;", at) - at));
+  }
+  return names;
+}
+
+/// Neither glslang nor Mesa refuses an input that no stage writes; it would silently read zero.
+std::string check_varyings(const Target& target, const std::vector<CompiledShader>& shaders) {
+  std::set<std::string> written;
+  for (const CompiledShader& shader : shaders) {
+    const std::string& text = shader.text.at(to_string(target));
+    for (const std::string& name : declared_varyings(text, "in")) {
+      if (written.count(name) == 0) return fmt::format("'{}' is read and never written", name);
+    }
+    written = declared_varyings(text, "out");
+  }
+  return {};
+}
+
 /// What a reader without Metal's compiler can tell.
 std::string check_msl(const std::string& text) {
   if (text.find("main0(") == std::string::npos) return "no entry point main0";
@@ -73,8 +100,8 @@ std::string check_glsl_program(const Target& target, const std::vector<CompiledS
     }
     program.addShader(parsed.back().get());
   }
-  if (program.link(kMessages)) return {};
-  return fmt::format("{} does not link: {}", to_string(target), program.getInfoLog());
+  if (!program.link(kMessages)) return fmt::format("{} does not link: {}", to_string(target), program.getInfoLog());
+  return check_varyings(target, shaders);
 }
 
 std::string check_hlsl(ShaderStage stage, const std::string& text) {

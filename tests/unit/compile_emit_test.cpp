@@ -171,6 +171,16 @@ TEST(CompileEmit, TheGlslCheckComparesVaryingsAcrossStages) {
   EXPECT_NE(testing::check_program(*compiled), "");
 }
 
+TEST(CompileEmit, TheGlslCheckCatchesAVaryingThatNobodyWrites) {
+  auto compiled = compile_for(testing::surface_sample(), {"essl-300"});
+  ASSERT_TRUE(compiled) << compiled.error().message;
+  std::string& text = compiled->shaders[1].text.at("essl-300");
+  const std::string name = "relievo_vertex_out_1";
+  for (std::size_t at; (at = text.find(name)) != std::string::npos;)
+    text.replace(at, name.size(), "relievo_lost_out_1");
+  EXPECT_EQ(testing::check_program(*compiled), "'relievo_lost_out_1' is read and never written");
+}
+
 TEST(CompileEmit, TheHlslCheckCatchesASeededFault) {
   auto compiled = compile_for(testing::ray_sample(), {"hlsl-5.0"});
   ASSERT_TRUE(compiled) << compiled.error().message;

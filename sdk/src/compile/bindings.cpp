@@ -85,18 +85,6 @@ Status refuse_unknown_kinds(const ShaderModule& module, std::string_view key) {
   return {};
 }
 
-/// OpenGL links by name, so one name of one namespace must stand for one (set, binding).
-Status check_names(const Entries& entries, std::string_view key) {
-  std::map<std::string_view, const BindingSlot*> names;
-  for (const auto& [place, entry] : entries) {
-    const auto [known, inserted] = names.try_emplace(entry.slot.name, &entry.slot);
-    if (inserted) continue;
-    return collision(key, fmt::format("'{}' is at set {} binding {} and also at set {} binding {}", entry.slot.name,
-                                      known->second->set, known->second->binding, place.first, place.second));
-  }
-  return {};
-}
-
 Status collect_push_constants(BindingLayout& layout, const ShaderModule& module, std::string_view key) {
   if (module.resources.push_constant_buffers.empty()) return {};
   const spirv_cross::Resource& block = module.resources.push_constant_buffers.front();
@@ -197,7 +185,6 @@ Result<BindingLayout> make_binding_layout(std::span<const ShaderModule> modules,
     if (auto ok = collect(entries, module, permutation_key); !ok) return tl::unexpected(ok.error());
     if (auto ok = collect_push_constants(layout, module, permutation_key); !ok) return tl::unexpected(ok.error());
   }
-  if (auto ok = check_names(entries, permutation_key); !ok) return tl::unexpected(ok.error());
 
   Numbering numbering(color_output_count(modules));
   for (auto& [place, entry] : entries) {

@@ -1,9 +1,9 @@
+#include "compile/binding_collisions.hpp"
+
 #include <fmt/format.h>
 
-#include <cctype>
+#include <algorithm>
 #include <set>
-
-#include "compile/bindings.hpp"
 
 namespace relievo {
 

@@ -85,24 +85,12 @@ Status refuse_unknown_kinds(const ShaderModule& module, std::string_view key) {
   return {};
 }
 
-/// OpenGL links by name, so one name of one namespace must stand for one (set, binding).
-Status check_names(const Entries& entries, std::string_view key) {
-  std::map<std::string_view, const BindingSlot*> names;
-  for (const auto& [place, entry] : entries) {
-    const auto [known, inserted] = names.try_emplace(entry.slot.name, &entry.slot);
-    if (inserted) continue;
-    return collision(key, fmt::format("'{}' is at set {} binding {} and also at set {} binding {}", entry.slot.name,
-                                      known->second->set, known->second->binding, place.first, place.second));
-  }
-  return {};
-}
-
 Status collect_push_constants(BindingLayout& layout, const ShaderModule& module, std::string_view key) {
   if (module.resources.push_constant_buffers.empty()) return {};
   const spirv_cross::Resource& block = module.resources.push_constant_buffers.front();
   const auto& type = module.reflection->get_type(block.base_type_id);
   PushConstants found;
-  found.name = block.name;
+  found.name = module.reflection->get_name(block.base_type_id);
   found.size = static_cast<int>(module.reflection->get_declared_struct_size(type));
   if (layout.push_constants &&
       (layout.push_constants->name != found.name || layout.push_constants->size != found.size)) {
@@ -159,7 +147,7 @@ class Numbering {
         break;
       case ResourceKind::storage_texture:
         entry.slot.gl_slot = image_unit_.take(n);
-        entry.hlsl.u = u_.take(n);
+        (entry.read_only ? entry.hlsl.t : entry.hlsl.u) = (entry.read_only ? t_ : u_).take(n);
         entry.msl.texture = texture_.take(n);
         break;
     }
@@ -197,7 +185,6 @@ Result<BindingLayout> make_binding_layout(std::span<const ShaderModule> modules,
     if (auto ok = collect(entries, module, permutation_key); !ok) return tl::unexpected(ok.error());
     if (auto ok = collect_push_constants(layout, module, permutation_key); !ok) return tl::unexpected(ok.error());
   }
-  if (auto ok = check_names(entries, permutation_key); !ok) return tl::unexpected(ok.error());
 
   Numbering numbering(color_output_count(modules));
   for (auto& [place, entry] : entries) {

@@ -60,11 +60,8 @@ constexpr int kMslVertexBuffer = 30;
 constexpr int kMslBufferSizes = 29;
 
 /// Collects the union over all shaders and numbers it: dense in each namespace, in the order of (set, binding).
-/// Errors: "compile.binding-collision" when two shaders disagree about a (set, binding), or a name stands for two;
+/// Errors: "compile.binding-collision" when two shaders disagree about a (set, binding);
 /// "compile.binding-kind" for kinds the contract does not know (separate textures, subpass inputs, …).
 Result<BindingLayout> make_binding_layout(std::span<const ShaderModule> modules, std::string_view permutation_key);
-
-/// The first register, binding or index that two resources share in an emitted text; empty when there is none.
-std::string find_binding_collision(Language language, std::string_view text);
 
 }  // namespace relievo

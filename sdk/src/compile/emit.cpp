@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "compile/binding_collisions.hpp"
 #include "compile/emit_targets.hpp"
 
 namespace relievo {

@@ -52,7 +52,7 @@ void check_names(const CompilerGLSL& compiler, const ShaderModule& module) {
     if (given != expected) throw std::runtime_error("'" + expected + "' is emitted as '" + given + "'; rename it");
   };
   const auto& resources = module.resources;
-  for (const auto* list : {&resources.uniform_buffers, &resources.storage_buffers, &resources.push_constant_buffers}) {
+  for (const auto* list : {&resources.uniform_buffers, &resources.storage_buffers}) {
     for (const Resource& block : *list) expect(compiler.get_remapped_declared_block_name(block.id), block.name);
   }
   for (const auto* list : {&resources.sampled_images, &resources.storage_images}) {

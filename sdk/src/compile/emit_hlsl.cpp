@@ -43,14 +43,27 @@ void bind_all(CompilerHLSL& compiler, spv::ExecutionModel stage, const BindingLa
   }
 }
 
-void bind_workgroup_count(CompilerHLSL& compiler, spv::ExecutionModel stage, const BindingLayout& layout) {
+/// Returns the buffer that gl_NumWorkGroups becomes, or 0 where it is unused.
+spirv_cross::VariableID bind_workgroup_count(CompilerHLSL& compiler, spv::ExecutionModel stage,
+                                             const BindingLayout& layout) {
   const spirv_cross::VariableID id = compiler.remap_num_workgroups_builtin();
-  if (id == spirv_cross::VariableID(0)) return;
+  if (id == spirv_cross::VariableID(0)) return id;
   HlslRegisters registers;
   registers.b = layout.hlsl_workgroup_count;
   compiler.set_decoration(id, spv::DecorationDescriptorSet, kWorkgroupCountSet);
   compiler.set_decoration(id, spv::DecorationBinding, 0);
   compiler.add_hlsl_resource_binding(binding_for(stage, kWorkgroupCountSet, 0, registers));
+  return id;
+}
+
+/// An image that another shader writes keeps its u register here too, even where this shader only reads it.
+void keep_written_images_writable(CompilerHLSL& compiler, const ShaderModule& module, const BindingLayout& layout) {
+  for (const spirv_cross::Resource& image : module.resources.storage_images) {
+    const auto set = compiler.get_decoration(image.id, spv::DecorationDescriptorSet);
+    const auto binding = compiler.get_decoration(image.id, spv::DecorationBinding);
+    const BoundResource* entry = layout.find(static_cast<int>(set), static_cast<int>(binding));
+    if (!entry->read_only) compiler.unset_decoration(image.id, spv::DecorationNonWritable);
+  }
 }
 
 CompilerHLSL::Options options_for(const Target& target) {
@@ -58,6 +71,7 @@ CompilerHLSL::Options options_for(const Target& target) {
   options.shader_model = static_cast<std::uint32_t>(target.version);
   options.support_nonzero_base_vertex_base_instance = false;
   options.point_size_compat = true;
+  options.nonwritable_uav_texture_as_srv = true;  // shader model 5.0 cannot load vectors from a u register
   return options;
 }
 
@@ -65,16 +79,14 @@ CompilerHLSL::Options options_for(const Target& target) {
 
 std::string emit_hlsl(const Target& target, const ShaderModule& module, const BindingLayout& layout,
                       const StageNeighbours& neighbours) {
-  CompilerHLSL compiler(module.ir);
+  CompilerHLSL compiler(hide_unread_outputs(module, neighbours));
   compiler.set_hlsl_options(options_for(target));
   const spv::ExecutionModel stage = module.execution_model();
   bind_all(compiler, stage, layout);
-  bind_workgroup_count(compiler, stage, layout);
-  compiler.set_enabled_interface_variables(compiler.get_active_interface_variables());
-  // Direct3D links by position in the signature: both sides must list the same varyings.
-  for (const int location : neighbours.unread_outputs) {
-    compiler.mask_stage_output_by_location(static_cast<std::uint32_t>(location), 0);
-  }
+  keep_written_images_writable(compiler, module, layout);
+  auto active = compiler.get_active_interface_variables();
+  active.insert(bind_workgroup_count(compiler, stage, layout));
+  compiler.set_enabled_interface_variables(std::move(active));
   return compiler.compile();
 }
 

@@ -46,13 +46,10 @@ CompilerMSL::Options options_for(const Target& target) {
 
 std::string emit_msl(const Target& target, const ShaderModule& module, const BindingLayout& layout,
                      const StageNeighbours& neighbours) {
-  CompilerMSL compiler(module.ir);
+  CompilerMSL compiler(hide_unread_outputs(module, neighbours));
   compiler.set_msl_options(options_for(target));
   bind_all(compiler, module.execution_model(), layout);
   compiler.set_enabled_interface_variables(compiler.get_active_interface_variables());
-  for (const int location : neighbours.unread_outputs) {
-    compiler.mask_stage_output_by_location(static_cast<std::uint32_t>(location), 0);
-  }
   return compiler.compile();
 }
 

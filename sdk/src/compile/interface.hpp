@@ -24,4 +24,8 @@ std::vector<StageNeighbours> find_neighbours(std::span<const ShaderModule> modul
 /// ESSL 300 match varyings by name. Vertex inputs and fragment outputs keep the author's names.
 void rename_varyings(spirv_cross::Compiler& compiler, const ShaderModule& module, const StageNeighbours& neighbours);
 
+/// A copy of the module's parsed form in which the outputs that nobody reads are private variables. Direct3D and Metal
+/// link stages by the list of varyings, so both sides must list the same.
+spirv_cross::ParsedIR hide_unread_outputs(const ShaderModule& module, const StageNeighbours& neighbours);
+
 }  // namespace relievo

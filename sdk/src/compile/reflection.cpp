@@ -1,5 +1,7 @@
 #include "compile/reflection.hpp"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -11,8 +13,6 @@ using Json = nlohmann::ordered_json;
 using spirv_cross::Compiler;
 using spirv_cross::SPIRType;
 
-// ---- bindings ----
-
 void put(Json& object, const char* key, int slot) {
   if (slot != kNoSlot) object[key] = slot;
 }
@@ -20,7 +20,7 @@ void put(Json& object, const char* key, int slot) {
 Json hlsl_slots(const HlslRegisters& registers) {
   Json slots = Json::object();
   const auto name = [&](const char* key, char letter, int number) {
-    if (number != kNoSlot) slots[key] = letter + std::to_string(number);
+    if (number != kNoSlot) slots[key] = fmt::format("{}{}", letter, number);
   };
   name("register", 'b', registers.b);
   name("register", 't', registers.t);
@@ -105,8 +105,6 @@ Json push_constants(const BindingLayout& layout, std::span<const Target> targets
           {"targets", target_slots(targets, {{"push_constant", true}}, push.gl_slot, push.hlsl, push.msl)}};
 }
 
-// ---- parameters, maps, constants ----
-
 Json parameters(const ComposedProgram& program) {
   Json all = Json::array();
   for (const ParameterSlot& slot : program.parameters) {
@@ -159,7 +157,7 @@ Json specialization_constants(std::span<const ShaderModule> modules) {
                 {"name", module.reflection->get_name(found.id)},
                 {"type", type},
                 {"default", std::move(value)},
-                {"macro", "SPIRV_CROSS_CONSTANT_ID_" + std::to_string(found.constant_id)},
+                {"macro", fmt::format("SPIRV_CROSS_CONSTANT_ID_{}", found.constant_id)},
                 {"stages", Json::array()}};
       }
       json["stages"].push_back(to_string(module.stage));
@@ -169,8 +167,6 @@ Json specialization_constants(std::span<const ShaderModule> modules) {
   for (auto& [id, json] : by_id) all.push_back(std::move(json));
   return all;
 }
-
-// ---- shaders ----
 
 const char* input_primitive(const Compiler& compiler) {
   const auto& modes = compiler.get_execution_mode_bitset();
@@ -224,7 +220,7 @@ Json target_notes(std::span<const Target> targets, const BindingLayout& layout) 
       notes["buffer_sizes_buffer"] = kMslBufferSizes;
     }
     if (target.language == Language::hlsl && layout.hlsl_workgroup_count != kNoSlot) {
-      notes["workgroup_count_register"] = "b" + std::to_string(layout.hlsl_workgroup_count);
+      notes["workgroup_count_register"] = fmt::format("b{}", layout.hlsl_workgroup_count);
     }
   }
   return all;

@@ -1,7 +1,7 @@
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <array>
 #include <string>
-#include <utility>
 
 #include "relievo/compile.hpp"
 
@@ -50,9 +50,9 @@ std::span<const Target> all_targets() {
 }
 
 std::string to_string(const Target& target) {
-  std::string name(language_name(target.language));
-  if (!has_minor(target.language)) return name + "-" + std::to_string(target.version);
-  return name + "-" + std::to_string(target.version / 10) + "." + std::to_string(target.version % 10);
+  const std::string_view name = language_name(target.language);
+  if (!has_minor(target.language)) return fmt::format("{}-{}", name, target.version);
+  return fmt::format("{}-{}.{}", name, target.version / 10, target.version % 10);
 }
 
 Result<Target> parse_target(std::string_view name) {
@@ -62,14 +62,9 @@ Result<Target> parse_target(std::string_view name) {
     if (names.back() == name) return target;
   }
   const std::string nearest = nearest_name(name, names);
-  std::string message = "'" + std::string(name) + "' is not a target; ";
-  if (!nearest.empty()) {
-    message += "did you mean '" + nearest + "'?";
-  } else {
-    message += "expected one of";
-    for (const std::string& known : names) message += " " + known;
-  }
-  return fail(ErrorCode::usage, "compile.unknown-target", std::move(message));
+  const std::string advice = nearest.empty() ? fmt::format("expected one of {}", fmt::join(names, ", "))
+                                             : fmt::format("did you mean '{}'?", nearest);
+  return fail(ErrorCode::usage, "compile.unknown-target", fmt::format("'{}' is not a target; {}", name, advice));
 }
 
 std::string_view file_extension(const Target& target) {

@@ -154,9 +154,9 @@ void add_compile(CLI::App& app, Context& context) {
   command->add_option("--bind", options->bindings, "owner.parameter=macro|specialization|uniform");
   command->add_option("-j", options->jobs, "Threads; the outputs do not depend on it")->check(CLI::Range(1, 1024));
   command->add_flag("--count", options->count, "Count steps and fetches");
-  command->add_flag("-O0", options->keep_unoptimized, "Do not optimise");
-  command->add_flag("-MD", options->depend, "Write a depfile");
-  command->add_option("-MF", options->depfile, "Name of the depfile");
+  command->add_flag("--O0", options->keep_unoptimized, "Do not optimise");
+  command->add_flag("--MD", options->depend, "Write a depfile");
+  command->add_option("--MF", options->depfile, "Name of the depfile");
 }
 
 }  // namespace relievo::cli

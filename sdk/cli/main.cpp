@@ -1,4 +1,20 @@
+#include <algorithm>
+
 #include "common.hpp"
+
+namespace {
+
+/// glslc's spellings that CLI11 does not take: one dash, several letters.
+std::vector<std::string> long_options(int argc, char** argv) {
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  for (std::string& argument : arguments) {
+    if (argument == "-MD" || argument == "-MF" || argument == "-O0") argument.insert(0, "-");
+  }
+  std::reverse(arguments.begin(), arguments.end());  // the order that CLI11's parse takes
+  return arguments;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace relievo::cli;
@@ -10,7 +26,7 @@ int main(int argc, char** argv) {
     add(app, context);
   }
   try {
-    app.parse(argc, argv);
+    app.parse(long_options(argc, argv));
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 1;
   } catch (const std::exception& error) {

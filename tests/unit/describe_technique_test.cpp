@@ -137,7 +137,7 @@ const Fault faults[] = {
     {"NumberInMaps", "[\"height\"]", "[1.5]", "describe.type", 9, 9, "the float 1.5"},
     {"FlatLoops", "[loops.linear_steps]", "[loops]", "describe.type", 13, 9, "the table of a loop is expected"},
     {"FractionalLoop", "default = 100", "default = 100.0", "describe.type", 17, 11, "the float 100; an integer"},
-    {"ZeroLoop", "min = 1\n", "min = 0\n", "describe.range", 15, 7, "is 0; an integer from 1"},
+    {"NegativeLoop", "min = 1\n", "min = -1\n", "describe.range", 15, 7, "is -1; an integer from 0"},
     {"HugeLoop", "max = 4096", "max = 2147483648", "describe.range", 16, 7, "2147483647"},
     {"MinAboveMax", "max = 4096", "max = 50", "describe.range", 17, 11, "is 100; a value from 1 to 50 is expected"},
     {"SwappedRange", "min = 0\nmax = 1.5", "min = 2\nmax = 1.5", "describe.range", 24, 7,

@@ -31,7 +31,7 @@ void check_range(TomlReader& table, const Parameter& parameter) {
 
 void read_range(TomlReader& table, Parameter& parameter) {
   constexpr int largest = std::numeric_limits<int>::max();
-  const int smallest = parameter.is_loop ? 1 : std::numeric_limits<int>::min();
+  const int smallest = parameter.is_loop ? 0 : std::numeric_limits<int>::min();
   const auto read = [&](std::string_view key) {
     return parameter.is_integer ? table.integer(key, smallest, largest) : table.number(key);
   };

@@ -75,10 +75,12 @@ MeshBuffers make_mesh_buffers(const Mesh& mesh, DisplacementUnits units, int tes
   return buffers;
 }
 
-std::vector<VertexAttribute> mesh_attributes() {
-  return {{0, Format::rgb32_float, offsetof(MeshVertex, position)}, {1, Format::rgb32_float, offsetof(MeshVertex, extrusion)},
+std::vector<VertexAttribute> mesh_attributes(bool welded) {
+  std::vector<VertexAttribute> attributes = {{0, Format::rgb32_float, offsetof(MeshVertex, position)}, {1, Format::rgb32_float, offsetof(MeshVertex, extrusion)},
           {2, Format::rg32_float, offsetof(MeshVertex, uv)},        {3, Format::rgb32_float, offsetof(MeshVertex, tangent)},
-          {4, Format::rgb32_float, offsetof(MeshVertex, bitangent)}, {5, Format::r32_uint, offsetof(MeshVertex, weld)}};
+          {4, Format::rgb32_float, offsetof(MeshVertex, bitangent)}};
+  if (welded) attributes.push_back({5, Format::r32_uint, offsetof(MeshVertex, weld)});
+  return attributes;
 }
 
 }  // namespace relievo

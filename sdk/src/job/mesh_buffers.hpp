@@ -29,6 +29,7 @@ struct MeshBuffers {
 /// tessellation² that share vertices among themselves.
 MeshBuffers make_mesh_buffers(const Mesh& mesh, DisplacementUnits units, int tessellation);
 
-std::vector<VertexAttribute> mesh_attributes();
+/// `welded`: with the weld ids, which only prisms read.
+std::vector<VertexAttribute> mesh_attributes(bool welded);
 
 }  // namespace relievo

@@ -84,7 +84,7 @@ Draw make_draw(const StageDescriptor& stage, const MeshBuffers& mesh, Job& job) 
   draw.vertex_buffer = add_buffer(job, "vertices", mesh.vertices);
   draw.index_buffer = add_buffer(job, "indices", mesh.indices);
   draw.vertex_stride = sizeof(MeshVertex);
-  draw.attributes = mesh_attributes();
+  draw.attributes = mesh_attributes(stage.mesh == "prisms");
   draw.count = static_cast<std::uint32_t>(mesh.indices.size());
   draw.instances = stage.mesh == "prisms" ? 3 : 1;  // one instance a tetrahedron
   draw.clear_color = std::array<float, 4>{0, 0, 0, 0};

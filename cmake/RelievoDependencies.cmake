@@ -9,6 +9,7 @@ find_package(CLI11 REQUIRED)
 find_package(glm REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(tinyexr REQUIRED)
+find_package(assimp REQUIRED)
 find_package(SPIRV-Tools REQUIRED)
 find_package(SPIRV-Tools-opt REQUIRED)
 # glslang's package makes old-style targets without include directories; SPIRV-Cross's need core and glsl first.

@@ -105,7 +105,9 @@ Result<std::vector<std::string>> technique_names(const Registry& registry, const
     std::stringstream stream(item);
     for (std::string name; std::getline(stream, name, ',');) {
       if (name == "all") {
-        for (const auto& [known, descriptor] : registry.techniques) names.push_back(known);
+        for (const auto& [known, descriptor] : registry.techniques) {
+          if (descriptor.technique_class != TechniqueClass::reference) names.push_back(known);
+        }
         continue;
       }
       Result<const TechniqueDescriptor*> technique = registry.technique(name);

@@ -32,8 +32,9 @@ struct Parameter {
   std::string file; int line = 0;  ///< where it was declared
 };
 
-/// The survey's classes (§4): does it guarantee the first hit?
-enum class TechniqueClass { non_iterative, unsafe, quasi_safe, safe, combined };
+/// The survey's classes (§4): does it guarantee the first hit? `reference` is ours: not an algorithm but what others are
+/// judged by; sweeps over all techniques leave it out.
+enum class TechniqueClass { non_iterative, unsafe, quasi_safe, safe, combined, reference };
 std::string_view to_string(TechniqueClass value);
 
 enum class FirstHit { never, if_steps_under_texel, always };

@@ -145,8 +145,10 @@ Image to_image(const std::vector<std::byte>& bytes, const SceneImage& size, Aov 
 
 }  // namespace
 
-Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh, MapSet& maps,
-                            const RenderRequest& request, std::vector<std::string>* messages) {
+namespace {
+
+Result<RenderResult> render_once(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
+                                 MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
   Result<std::vector<std::string>> needed = required_maps(registry, request.stage, request.technique);
   if (!needed) return tl::unexpected(needed.error());
   for (const std::string& map : *needed) {
@@ -166,6 +168,52 @@ Result<RenderResult> render(Backend& backend, const Registry& registry, const Sc
   if (!result->command_seconds.empty()) rendered.seconds = result->command_seconds.front();
   for (const TriangleFrame& frame : triangle_frames(mesh)) rendered.degenerate_triangles += frame.degenerate;
   return rendered;
+}
+
+/// The exact hits of the pixels' rays, as the map that techniques/oracle replays: status and t.
+MapData exact_hits(const HeightMap& height, const Image& origins, const Image& directions) {
+  std::vector<Ray> rays;
+  std::size_t pixels = origins.pixels.size() / 4;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const float *o = &origins.pixels[4 * i], *d = &directions.pixels[4 * i];
+    rays.push_back({o[0], o[1], o[2], d[0], d[1], d[2], o[3] > 0 ? d[3] : 0.0});
+  }
+  MapData map{"oracle_hits", origins.width, origins.height, 2, {}, AddressMode::clamp};
+  for (const Hit& hit : Oracle(height).trace(rays)) {
+    map.texels.push_back(static_cast<float>(hit.status));
+    map.texels.push_back(static_cast<float>(hit.t));
+  }
+  return map;
+}
+
+/// Pass one writes the rays of the pixels, pass two replays their exact hits.
+Result<RenderResult> render_oracle(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
+                                   MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
+  if (request.stage != "surface") {
+    return fail(ErrorCode::unsupported, "render.oracle-stage",
+                "the oracle replays one ray a pixel and stage '" + request.stage + "' has several; expected stage 'surface'");
+  }
+  RenderRequest rays = request;
+  rays.technique = "bump";
+  rays.aov = Aov::ray_origin;
+  Result<RenderResult> origins = render_once(backend, registry, scene, mesh, maps, rays, messages);
+  if (!origins) return origins;
+  rays.aov = Aov::ray_direction;
+  Result<RenderResult> directions = render_once(backend, registry, scene, mesh, maps, rays, messages);
+  if (!directions) return directions;
+  const MapData& height = maps.at("height");
+  MapSet with_hits = maps;
+  with_hits["oracle_hits"] = exact_hits({height.width, height.height, height.texels, height.address}, origins->image, directions->image);
+  return render_once(backend, registry, scene, mesh, with_hits, request, messages);
+}
+
+}  // namespace
+
+Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh, MapSet& maps,
+                            const RenderRequest& request, std::vector<std::string>* messages) {
+  bool replay = request.technique == "oracle" && !maps.contains("oracle_hits");
+  return replay ? render_oracle(backend, registry, scene, mesh, maps, request, messages)
+                : render_once(backend, registry, scene, mesh, maps, request, messages);
 }
 
 }  // namespace relievo

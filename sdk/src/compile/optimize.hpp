@@ -11,8 +11,8 @@ namespace relievo {
 /// spirv-val for Vulkan 1.0. Errors: "compile.spirv-invalid" with the validator's own words; `when` names the step.
 Status validate_spirv(const SpirvWords& words, std::string_view permutation_key, std::string_view when);
 
-/// The performance passes of spirv-opt; names, bindings in use and specialization constants in use are kept.
-/// Errors: "compile.spirv-invalid" when the module cannot be read.
+/// Inlines and removes what is dead or redundant; float arithmetic stays as written. Names, bindings in use and
+/// specialization constants in use are kept. Errors: "compile.spirv-invalid" when the module cannot be read.
 Result<SpirvWords> optimize_spirv(const SpirvWords& words, std::string_view permutation_key);
 
 }  // namespace relievo

@@ -60,38 +60,12 @@ TEST(DescriptorRobustness, SurvivesRandomBytes) {
 
 TEST(DescriptorRobustness, SurvivesRandomSyntax) {
   std::mt19937 random(2);
-  const std::vector<std::string> pieces = {"[",
-                                           "]",
-                                           "{",
-                                           "}",
-                                           "=",
-                                           ".",
-                                           ",",
-                                           "\"",
-                                           "'",
-                                           "\"\"\"",
-                                           "'''",
-                                           "\n",
-                                           "#",
-                                           "\\",
-                                           "-",
-                                           "inf",
-                                           "nan",
-                                           "1",
-                                           "1e",
-                                           "0x",
-                                           "a",
-                                           "name",
-                                           " ",
-                                           "[[",
-                                           "]]",
-                                           "\\u",
-                                           "\xC3",
-                                           "\xFF",
-                                           std::string(1, '\0'),
-                                           "1979-05-27",
-                                           "true",
-                                           "\r"};
+  const std::vector<std::string> pieces = {
+      "[",          "]",      "{",      "}",      "=",      ".",    ",",    "\"",
+      "'",          "\"\"\"", "'''",    "\n",     "#",      "\\",   "-",    "inf",
+      "nan",        "1",      "1e",     "0x",     "a",      "name", " ",    "[[",
+      "]]",         "\\u",    "\u00e9", "\u2030", "\u00a0", "\xC3", "\xFF", std::string(1, '\0'),
+      "1979-05-27", "true",   "\r"};
   for (int round = 0; round < 20000; ++round) {
     std::string text;
     for (unsigned count = random() % 40; count > 0; --count) text += pieces[random() % pieces.size()];

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "describe/toml_nesting.hpp"
+#include "describe/toml_guard.hpp"
 
 namespace relievo {
 namespace {
@@ -135,7 +135,7 @@ Result<TomlValue> parse_toml(std::string_view text, const std::string& file) {
                 fmt::format("the file is {} bytes long; at most {} are allowed", text.size(), max_document_size), file,
                 1, 1);
   }
-  if (const Status nesting = check_toml_nesting(text, file); !nesting) return tl::unexpected(nesting.error());
+  if (const Status guarded = guard_toml(text, file); !guarded) return tl::unexpected(guarded.error());
   const toml::parse_result parsed = toml::parse(text, std::string_view(file));
   if (parsed) return convert(parsed.table());
   Error error{ErrorCode::descriptor, "describe.syntax", std::string(parsed.error().description()), file, 1, 1};

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "relievo/height_map.hpp"
 #include "relievo/image.hpp"
 #include "relievo/result.hpp"
 
@@ -32,6 +33,9 @@ Result<DecodedImage> decode_pfm(const ImageSource& source);
 
 /// Finds the format by content and decodes; gzipped files are unpacked first.
 Result<DecodedImage> decode_image(const ImageSource& source);
+
+/// As `load_height_map`, from bytes.
+Result<HeightMap> decode_height_map(const ImageSource& source);
 
 /// Rejects extents outside 1…`max_extent`, and pixels that so few bytes cannot hold whatever the compression.
 Status check_extent(const ImageSource& source, std::int64_t width, std::int64_t height, int max_extent);

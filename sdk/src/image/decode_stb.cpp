@@ -32,7 +32,9 @@ namespace {
 /// Feeds stb and notices when it asks for more than there is: stb itself reads zeros then, and calls it a picture.
 class Stream {
  public:
-  explicit Stream(Bytes bytes) : bytes_(bytes) {}
+  /// At the end of an HDR file stb 2.27 takes the zeros it reads for empty runs and loops for ever; `endless_runs`
+  /// feeds it runs that are too long instead, which it rejects.
+  explicit Stream(Bytes bytes, bool endless_runs = false) : bytes_(bytes), endless_runs_(endless_runs) {}
   bool overran() const { return overran_; }
 
   static int read(void* user, char* data, int size) {
@@ -44,6 +46,10 @@ class Stream {
     if (count > 0) std::memcpy(data, self.bytes_.data() + self.position_, count);
     self.position_ += count;
     if (count == 0 || (count < static_cast<std::size_t>(size) && data != self.look_ahead_)) self.overran_ = true;
+    if (count == 0 && self.endless_runs_) {
+      std::memset(data, 0xff, static_cast<std::size_t>(size));
+      return size;
+    }
     return static_cast<int>(count);
   }
 
@@ -64,6 +70,7 @@ class Stream {
   Bytes bytes_;
   std::size_t position_ = 0;
   const char* look_ahead_ = nullptr;
+  bool endless_runs_;
   bool overran_ = false;
 };
 
@@ -129,7 +136,7 @@ Result<DecodedImage> decode_stb(const ImageSource& source) {
     return tl::unexpected(extent.error());
 
   const Depth depth = depth_of(source.bytes);
-  Stream stream(source.bytes);
+  Stream stream(source.bytes, depth == Depth::floating);
   DecodedImage decoded;
   Image& image = decoded.image;
   std::unique_ptr<void, StbFree> pixels(load(depth, stream, image));

@@ -99,7 +99,7 @@ Result<HeightMap> from_array(const std::filesystem::path& path, const NumberArra
   return map;
 }
 
-Result<HeightMap> decode_height_map(const ImageSource& source) {
+Result<HeightMap> decode(const ImageSource& source) {
   if (is_npy(source.bytes) || is_zip(source.bytes)) {
     const auto array = is_npy(source.bytes) ? decode_npy(source) : decode_npz(source);
     if (!array) return tl::unexpected(array.error());
@@ -112,14 +112,18 @@ Result<HeightMap> decode_height_map(const ImageSource& source) {
 
 }  // namespace
 
+Result<HeightMap> decode_height_map(const ImageSource& source) {
+  try {
+    return decode(source);
+  } catch (const std::bad_alloc&) {
+    return file_error(source.path, "image.memory", "needs more memory than there is");
+  }
+}
+
 Result<HeightMap> load_height_map(const std::filesystem::path& path) {
   const auto bytes = read_file(path, "image");
   if (!bytes) return tl::unexpected(bytes.error());
-  try {
-    return decode_height_map({path, *bytes});
-  } catch (const std::bad_alloc&) {
-    return file_error(path, "image.memory", "needs more memory than there is");
-  }
+  return decode_height_map({path, *bytes});
 }
 
 }  // namespace relievo

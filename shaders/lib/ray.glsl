@@ -16,6 +16,9 @@ struct Ray {
   float n_dot_v;   // |cosine| of the angle between the ray and the base normal, in world space
 };
 
+// Which part of the mesh the current ray belongs to: the tetrahedron of a prism, 3 · triangle + index, or 0.
+int relievo_cell = 0;
+
 struct Hit {
   int status;
   float t;

@@ -19,6 +19,7 @@ layout(location = 10) flat in vec3 prism_extrusion_3;
 layout(location = 11) flat in vec3 prism_tangent;
 layout(location = 12) flat in vec3 prism_bitangent;
 layout(location = 13) flat in int prism_leaves_by_base;
+layout(location = 14) flat in int prism_cell;
 
 vec3 prism_blend(vec4 w, vec3 a, vec3 b, vec3 c, vec3 d) { return w.x * a + w.y * b + w.z * c + w.w * d; }
 
@@ -37,6 +38,7 @@ float prism_way_back(vec4 distances, vec4 change) {
 }
 
 void main() {
+  relievo_cell = prism_cell;
   vec4 change = prism_distances - prism_eye_distances;
   float back = prism_way_back(prism_distances, change);
   vec4 entry = prism_distances - back * change;

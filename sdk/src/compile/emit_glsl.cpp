@@ -18,6 +18,7 @@ CompilerGLSL::Options options_for(const Target& target) {
   options.separate_shader_objects = false;
   options.enable_420pack_extension = false;  // GLSL 330 binds by name
   options.emit_push_constant_as_uniform_buffer = true;
+  options.force_zero_initialized_variables = true;  // what the optimizer leaves undefined, drivers warn of
   options.vertex.fixup_clipspace = false;
   options.vertex.flip_vert_y = false;
   options.vertex.support_nonzero_base_instance = false;  // else a uniform appears that nobody sets

@@ -31,7 +31,7 @@ void check_range(TomlReader& table, const Parameter& parameter) {
 
 void read_range(TomlReader& table, Parameter& parameter) {
   constexpr int largest = std::numeric_limits<int>::max();
-  const int smallest = parameter.is_loop ? 1 : std::numeric_limits<int>::min();
+  const int smallest = parameter.is_loop ? 0 : std::numeric_limits<int>::min();
   const auto read = [&](std::string_view key) {
     return parameter.is_integer ? table.integer(key, smallest, largest) : table.number(key);
   };
@@ -82,7 +82,7 @@ const FeatureSet& known_features() {
 }
 
 void check_schema(TomlReader& descriptor) {
-  if (!descriptor.has("schema")) return;  // reported as missing after unknown keys, one of which may be its misspelling
+  if (!descriptor.has("schema")) return;
   const int schema = descriptor.integer("schema", 1, std::numeric_limits<int>::max());
   if (schema <= descriptor_schema) return;
   descriptor.report("describe.range",

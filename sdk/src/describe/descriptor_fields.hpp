@@ -13,7 +13,7 @@ namespace relievo {
 /// The newest schema that this version reads.
 inline constexpr int descriptor_schema = 1;
 
-/// Checked before anything else: a newer schema may well have keys unknown here.
+/// Rejects a newer schema before anything else: it may well have keys unknown here.
 void check_schema(TomlReader& descriptor);
 
 /// The required "name", which is also its folder's: a reader finds a thing by its name.
@@ -36,6 +36,7 @@ Result<Descriptor> parse_descriptor(std::string_view text, const std::string& pa
   Descriptor descriptor;
   descriptor.file = path;
   read(reader, descriptor);
+  reader.integer("schema", 1, descriptor_schema);  // required, after a misspelling of it had its chance
   descriptor.name = read_name(reader);
   descriptor.title = reader.text("title");
   descriptor.source = reader.text_or("source", "");

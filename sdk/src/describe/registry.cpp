@@ -21,9 +21,10 @@ Status add(std::map<std::string, Descriptor, std::less<>>& known, const std::str
   const auto [first, is_new] = known.try_emplace(descriptor->name, *descriptor);
   if (is_new) return {};
   const Place place = find_place(text, "name");
-  return fail(ErrorCode::descriptor, "describe.duplicate",
-              fmt::format("the name {} is already taken by {}", quote(descriptor->name), quote(first->second.file)),
-              path, place.line, place.column);
+  return fail(
+      ErrorCode::descriptor, "describe.duplicate",
+      fmt::format("the name {} is already taken by {}", quote(descriptor->name), quote_path(first->second.file)), path,
+      place.line, place.column);
 }
 
 /// A descriptor is found by its file name, wherever in the tree it is.

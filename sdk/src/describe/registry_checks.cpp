@@ -28,7 +28,7 @@ Status check_file(const Registry& registry, const std::string& file, const std::
     if (it->first.ends_with(".glsl")) known.push_back(it->first);
   }
   return fail_at(registry, "describe.missing-file",
-                 fmt::format("the file {} does not exist{}", quote(wanted), suggest(wanted, known)), file, key);
+                 fmt::format("the file {} does not exist{}", quote_path(wanted), suggest(wanted, known)), file, key);
 }
 
 Status check_files(const Registry& registry) {

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "describe/toml_nesting.hpp"
+#include "describe/toml_guard.hpp"
 
 namespace relievo {
 namespace {
@@ -77,17 +77,8 @@ std::string_view cut(std::string_view text, std::size_t length) {
   return text.substr(0, length);
 }
 
-}  // namespace
-
-const TomlEntry* find_entry(const TomlValue& table, std::string_view key) {
-  for (const TomlEntry& entry : table.entries) {
-    if (entry.key == key) return &entry;
-  }
-  return nullptr;
-}
-
-std::string quote(std::string_view text) {
-  const std::string_view shown = cut(text, 60);
+std::string quote_start(std::string_view text, std::size_t length) {
+  const std::string_view shown = cut(text, length);
   std::string result = "\"";
   for (const char c : shown) {
     const auto byte = static_cast<unsigned char>(c);
@@ -99,6 +90,23 @@ std::string quote(std::string_view text) {
   }
   if (shown.size() < text.size()) result += "…";
   return result + "\"";
+}
+
+}  // namespace
+
+const TomlEntry* find_entry(const TomlValue& table, std::string_view key) {
+  for (const TomlEntry& entry : table.entries) {
+    if (entry.key == key) return &entry;
+  }
+  return nullptr;
+}
+
+std::string quote(std::string_view text) {
+  return quote_start(text, 60);
+}
+
+std::string quote_path(std::string_view path) {
+  return quote_start(path, 1000);
 }
 
 std::string describe_value(const TomlValue& value) {
@@ -127,7 +135,7 @@ Result<TomlValue> parse_toml(std::string_view text, const std::string& file) {
                 fmt::format("the file is {} bytes long; at most {} are allowed", text.size(), max_document_size), file,
                 1, 1);
   }
-  if (const Status nesting = check_toml_nesting(text, file); !nesting) return tl::unexpected(nesting.error());
+  if (const Status guarded = guard_toml(text, file); !guarded) return tl::unexpected(guarded.error());
   const toml::parse_result parsed = toml::parse(text, std::string_view(file));
   if (parsed) return convert(parsed.table());
   Error error{ErrorCode::descriptor, "describe.syntax", std::string(parsed.error().description()), file, 1, 1};

@@ -40,6 +40,8 @@ std::string describe_value(const TomlValue& value);
 
 /// The text between quotes, at most about 60 bytes of it, control characters escaped.
 std::string quote(std::string_view text);
+/// The same for a path, which is worth showing whole: up to 1000 bytes.
+std::string quote_path(std::string_view path);
 
 /// Parses `text`; the result is its root table. Errors: "describe.syntax" with the place in `file` where TOML's grammar
 /// is broken, where keys or values nest deeper than any descriptor needs, or when the text exceeds 1 MiB.

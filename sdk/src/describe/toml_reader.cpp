@@ -20,7 +20,7 @@ void FirstError::add(std::string id, std::string message, int line, int column) 
 std::string suggest(std::string_view name, const std::vector<std::string>& known) {
   if (known.empty()) return "; none is known";
   const std::string nearest = nearest_name(name, known);
-  if (!nearest.empty()) return fmt::format("; the nearest is {}", quote(nearest));
+  if (!nearest.empty()) return fmt::format("; the nearest is {}", quote_path(nearest));
   return fmt::format("; known are {}", fmt::join(known, ", "));
 }
 

@@ -31,7 +31,7 @@ constexpr std::array<Kind, 3> kinds = {
 
 tl::unexpected<Error> unreadable(const fs::path& path, const std::string& reason) {
   return fail(ErrorCode::io, "describe.unreadable",
-              fmt::format("{} cannot be read: {}", quote(path.generic_string()), reason), path.generic_string());
+              fmt::format("{} cannot be read: {}", quote_path(path.generic_string()), reason), path.generic_string());
 }
 
 /// Whether `path`, after every link, lies in `root`, which is canonical.
@@ -100,7 +100,7 @@ Status check_name_is_free(const fs::path& descriptor, const std::string& prefix,
   const Place place = find_place(text.value_or(""), "name");
   return fail(ErrorCode::descriptor, "describe.duplicate",
               fmt::format("the name {} is already taken by {}",
-                          quote(descriptor.parent_path().filename().generic_string()), quote(owner)),
+                          quote(descriptor.parent_path().filename().generic_string()), quote_path(owner)),
               descriptor.generic_string(), place.line, place.column);
 }
 

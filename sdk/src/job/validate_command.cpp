@@ -41,7 +41,9 @@ void check_resource(Check& check, const Job& job, const BindingSlot& slot, int r
                   "slot \"{}\" is bound to texture \"{}\" of format {}, which is no storage format", slot.name,
                   texture.name, to_string(texture.format));
   } else {
-    check.require(texture.format != Format::r32_uint || texture.sampler.min_mag == TexelFilter::nearest, "job.format",
+    const bool is_nearest =
+        texture.sampler.min_mag == TexelFilter::nearest && texture.sampler.mip == TexelFilter::nearest;
+    check.require(texture.format != Format::r32_uint || is_nearest, "job.format",
                   "texture \"{}\" of format r32_uint has a linear filter, expected nearest", texture.name);
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <set>
 #include <string>
@@ -31,8 +32,9 @@ struct Parameter {
   std::string file; int line = 0;  ///< where it was declared
 };
 
-/// The survey's classes (§4): does it guarantee the first hit?
-enum class TechniqueClass { non_iterative, unsafe, quasi_safe, safe, combined };
+/// The survey's classes (§4): does it guarantee the first hit? `reference` is ours: not an algorithm but what others are
+/// judged by; sweeps over all techniques leave it out.
+enum class TechniqueClass { non_iterative, unsafe, quasi_safe, safe, combined, reference };
 std::string_view to_string(TechniqueClass value);
 
 enum class FirstHit { never, if_steps_under_texel, always };
@@ -94,6 +96,8 @@ struct Registry {
   std::map<std::string, MapDescriptor, std::less<>> maps;
   std::map<std::string, StageDescriptor, std::less<>> stages;
   SourceTree sources;
+  /// Where the sources that came from a user's folder lie on disk, by source path: what diagnostics should name.
+  std::map<std::string, std::string, std::less<>> origins;
 
   /// Look-ups by name; the error ("describe.unknown-technique", …) names the nearest known name.
   Result<const TechniqueDescriptor*> technique(std::string_view name) const;
@@ -108,6 +112,11 @@ const SourceTree& embedded_sources();
 /// technique.toml, map.toml or stage.toml; its files enter the tree below "<subfolder kind>/<subfolder name>/".
 /// A name that is already taken is an error ("describe.duplicate").
 Result<Registry> load_registry(const std::vector<std::filesystem::path>& folders = {});
+
+/// Folders in braces, `load_registry({a, b})`, which would otherwise be a tree as well.
+inline Result<Registry> load_registry(std::initializer_list<std::filesystem::path> folders) {
+  return load_registry(std::vector<std::filesystem::path>(folders));
+}
 
 /// As above from a tree alone; what the embedded sources go through.
 Result<Registry> load_registry(SourceTree sources);

@@ -35,4 +35,19 @@ struct ErrorFigures {
 /// `inside` counts as a hit at t = 0 on both sides.
 ErrorFigures compare_hits(std::span<const Hit> reference, std::span<const Hit> measured, int width, int height);
 
+/// Two 8-bit RGBA images of the same size; alpha > 0 marks what was drawn.
+struct ImageDifference {
+  double within_percent = 100;  ///< pixels whose channels all differ by at most 1/255
+  int largest = 0;              ///< largest difference of a channel, of 255
+  double psnr = 0;              ///< dB over the colour channels; infinite when equal
+  double mask_iou = 1;          ///< intersection over union of the drawn pixels; 1 when both are empty
+};
+
+/// Errors of the caller: sizes that differ are asserted.
+ImageDifference compare_images(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b);
+
+/// Pixels that `image` leaves empty although `reference` draws them and all pixels within `margin` around them: cracks.
+std::uint64_t count_cracks(std::span<const std::uint8_t> image, std::span<const std::uint8_t> reference, int width, int height,
+                           int margin = 2);
+
 }  // namespace relievo

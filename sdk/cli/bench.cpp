@@ -1,0 +1,117 @@
+/// relievo bench: techniques interleaved in one run, time beside cost and error.
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+
+#include "common.hpp"
+#include "rays_csv.hpp"
+#include "relievo/trace.hpp"
+
+namespace relievo::cli {
+
+namespace {
+
+struct BenchOptions {
+  std::vector<std::string> techniques, set;
+  std::string height, address = "repeat", rays, backend = "vulkan", filter = "exact";
+  double scale = 0.1, angle = 20;
+  int repeat = 5;
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return -1;
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+Result<std::vector<TraceRequest>> requests_of(const Registry& registry, const BenchOptions& options) {
+  Result<std::vector<std::string>> names = technique_names(registry, options.techniques);
+  if (!names) return tl::unexpected(names.error());
+  Result<Settings> settings = parse_settings(registry, options.set, names->size() == 1 ? names->front() : "");
+  if (!settings) return tl::unexpected(settings.error());
+  Result<HeightFilter> filter = parse_height_filter(options.filter);
+  if (!filter) return tl::unexpected(filter.error());
+  settings->values.try_emplace("ray.scale", options.scale);
+  std::vector<TraceRequest> requests;
+  for (const std::string& name : *names) {
+    auto own = settings->filters.find(name);
+    requests.push_back({name, own == settings->filters.end() ? *filter : own->second, false, settings->values});
+  }
+  return requests;
+}
+
+nlohmann::json row_of(const TraceRequest& request, const TraceResult& timed, const ErrorFigures& figures, double reference) {
+  nlohmann::json row = to_json(figures);
+  double seconds = median(timed.seconds);
+  row["technique"] = request.technique;
+  row["filter"] = to_string(request.filter);
+  row["median_s"] = seconds;
+  row["rays_per_s"] = seconds > 0 ? static_cast<double>(timed.hits.size()) / seconds : 0;
+  row["ratio"] = reference > 0 ? seconds / reference : 0;
+  row["steps"] = figures.mean_steps;
+  row["fetches"] = figures.mean_fetches;
+  return row;
+}
+
+void print_table(const nlohmann::json& rows) {
+  fmt::print("{:<20} {:<9} {:>9} {:>9} {:>6} {:>8} {:>8} {:>8} {:>10} {:>10}\n", "technique", "filter", "ms", "Mrays/s", "ratio", "steps", "fetches", "wrong %", "p99 texel", "p99 |dH|");
+  for (const auto& r : rows) {
+    fmt::print("{:<20} {:<9} {:>9.2f} {:>9.2f} {:>6.2f} {:>8.1f} {:>8.1f} {:>8.3f} {:>10.2e} {:>10.2e}\n", r["technique"].get<std::string>(), r["filter"].get<std::string>(), r["median_s"].get<double>() * 1e3, r["rays_per_s"].get<double>() / 1e6, r["ratio"].get<double>(), r["steps"].get<double>(), r["fetches"].get<double>(), r["wrong_percent"].get<double>(), r["uv_texels"]["p99"].get<double>(), r["height"]["p99"].get<double>());
+  }
+}
+
+Status run_bench(const Context& context, const BenchOptions& options) {
+  Result<Registry> registry = context.registry();
+  if (!registry) return tl::unexpected(registry.error());
+  Result<std::vector<TraceRequest>> timing = requests_of(*registry, options);
+  if (!timing) return tl::unexpected(timing.error());
+  Result<HeightMap> height = load_height(options.height, options.address);
+  if (!height) return tl::unexpected(height.error());
+  std::vector<Ray> rays = make_view_rays(options.angle, options.scale);
+  if (!options.rays.empty()) {
+    Result<std::vector<Ray>> given = read_rays(options.rays);
+    if (!given) return tl::unexpected(given.error());
+    rays = std::move(*given);
+  }
+  Result<std::unique_ptr<Backend>> backend = open(options.backend, false);
+  if (!backend) return tl::unexpected(backend.error());
+  MapSet maps = map_set(*height);
+  std::vector<TraceRequest> counting = *timing;
+  for (TraceRequest& request : counting) request.count_cost = true;
+  Result<std::vector<TraceResult>> counted = trace(**backend, *registry, maps, rays, counting);
+  if (!counted) return tl::unexpected(counted.error());
+  Result<std::vector<TraceResult>> timed = trace(**backend, *registry, maps, rays, *timing, options.repeat);
+  if (!timed) return tl::unexpected(timed.error());
+  std::vector<Hit> truth = Oracle(*height).trace(rays);
+  nlohmann::json rows = nlohmann::json::array();
+  double reference = median(timed->front().seconds);
+  for (std::size_t k = 0; k < timing->size(); ++k) {
+    ErrorFigures figures = compare_hits(truth, (*counted)[k].hits, height->width, height->height);
+    rows.push_back(row_of((*timing)[k], (*timed)[k], figures, reference));
+  }
+  if (context.json) {
+    fmt::print("{}\n", rows.dump(2));
+  } else {
+    print_table(rows);
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Context& context) {
+  auto options = std::make_shared<BenchOptions>();
+  CLI::App* command = add_command(app, context, "bench", "Time techniques against each other, with their errors", [&context, options] { return run_bench(context, *options); });
+  command->add_option("--techniques", options->techniques, "a,b,… or all; the first is the reference")->required();
+  command->add_option("--height", options->height, "Height file")->required();
+  command->add_option("--address", options->address)->capture_default_str();
+  command->add_option("--scale", options->scale, "Height of the lid in texture widths")->check(CLI::PositiveNumber)->capture_default_str();
+  CLI::Option* rays = command->add_option("--rays", options->rays, "rays.csv");
+  command->add_option("--angle", options->angle, "Degrees above the base plane")->check(CLI::Range(0.01, 90.0))->excludes(rays)->capture_default_str();
+  command->add_option("--backend", options->backend)->capture_default_str();
+  command->add_option("--filter", options->filter, "exact or hardware; --set technique.filter=… for one")->capture_default_str();
+  command->add_option("--repeat", options->repeat, "Timed rounds")->check(CLI::Range(1, 1000))->capture_default_str();
+  command->add_option("--set", options->set, "technique.parameter=value");
+}
+
+}  // namespace relievo::cli

@@ -1,0 +1,201 @@
+#include "common.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fmt/format.h>
+#include <fstream>
+#include <unistd.h>
+
+#include "mesh_file.hpp"
+
+namespace relievo::cli {
+
+Result<Registry> Context::registry() const {
+  return load_registry(std::vector<std::filesystem::path>(folders.begin(), folders.end()));
+}
+
+void Context::report(const Error& error) {
+  exit_code = relievo::exit_code(error.code);
+  if (!json || error.code == ErrorCode::mismatch) {  // a mismatch comes with its own JSON
+    fmt::print(stderr, "{}\n", format(error));
+    return;
+  }
+  nlohmann::json object = {{"id", error.id}, {"message", error.message}, {"exit_code", exit_code}};
+  if (!error.file.empty()) object["file"] = error.file;
+  if (error.line > 0) object["line"] = error.line;
+  if (error.column > 0) object["column"] = error.column;
+  fmt::print("{}\n", nlohmann::json{{"error", object}}.dump(2));
+}
+
+CLI::App* add_command(CLI::App& app, Context& context, const std::string& name, const std::string& title,
+                      std::function<Status()> run) {
+  CLI::App* command = app.add_subcommand(name, title);
+  command->add_option("--techniques-dir,--techniques-folder,-I", context.folders, "Folder of technique, map or stage folders to add")->type_name("DIR");
+  command->add_flag("--json", context.json, "Machine-readable output");
+  command->callback([&context, run = std::move(run)] {
+    if (Status status = run(); !status) context.report(status.error());
+  });
+  return command;
+}
+
+namespace {
+
+/// Every "owner.parameter" of the registry.
+std::vector<std::string> known_parameters(const Registry& registry) {
+  std::vector<std::string> known;
+  auto add = [&](const auto& descriptors) {
+    for (const auto& [name, descriptor] : descriptors) {
+      for (const Parameter& parameter : descriptor.parameters) known.push_back(name + "." + parameter.name);
+    }
+  };
+  add(registry.techniques);
+  add(registry.maps);
+  add(registry.stages);
+  return known;
+}
+
+Result<double> parse_number(const std::string& text, const std::string& key) {
+  char* end = nullptr;
+  double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !std::isfinite(value)) {
+    return fail(ErrorCode::usage, "cli.set", fmt::format("--set {}={}: the value is not a number", key, text));
+  }
+  return value;
+}
+
+}  // namespace
+
+Result<Settings> parse_settings(const Registry& registry, const std::vector<std::string>& given, const std::string& only) {
+  Settings settings;
+  std::vector<std::string> known = known_parameters(registry);
+  for (const std::string& item : given) {
+    std::size_t equals = item.find('=');
+    if (equals == std::string::npos) return fail(ErrorCode::usage, "cli.set", fmt::format("--set {}: expected name=value", item));
+    std::string key = item.substr(0, equals), text = item.substr(equals + 1);
+    if (key.find('.') == std::string::npos && !only.empty()) key = only + "." + key;
+    std::string owner = key.substr(0, key.find('.'));
+    if (key == owner + ".filter" && registry.techniques.contains(owner)) {
+      Result<HeightFilter> filter = parse_height_filter(text);
+      if (!filter) return tl::unexpected(filter.error());
+      settings.filters[owner] = *filter;
+      continue;
+    }
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      std::string nearest = nearest_name(key, known);
+      return fail(ErrorCode::usage, "cli.set",
+                  fmt::format("--set {}: '{}' is no parameter{}", item, key, nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+    }
+    Result<double> value = parse_number(text, key);
+    if (!value) return tl::unexpected(value.error());
+    settings.values[key] = *value;
+  }
+  return settings;
+}
+
+Result<std::unique_ptr<Backend>> open(const std::string& name, bool validation) {
+  BackendOptions options;
+  options.validation = validation;
+  return open_backend(name, options);
+}
+
+Result<std::vector<std::string>> technique_names(const Registry& registry, const std::vector<std::string>& given) {
+  std::vector<std::string> names;
+  for (const std::string& item : given) {
+    std::stringstream stream(item);
+    for (std::string name; std::getline(stream, name, ',');) {
+      if (name == "all") {
+        for (const auto& [known, descriptor] : registry.techniques) {
+          if (descriptor.technique_class != TechniqueClass::reference) names.push_back(known);
+        }
+        continue;
+      }
+      Result<const TechniqueDescriptor*> technique = registry.technique(name);
+      if (!technique) return tl::unexpected(technique.error());
+      names.push_back(name);
+    }
+  }
+  if (names.empty()) return fail(ErrorCode::usage, "cli.no-technique", "no technique is named; expected one or more, or 'all'");
+  return names;
+}
+
+Result<HeightMap> load_height(const std::string& path, const std::string& address) {
+  Result<AddressMode> mode = parse_address_mode(address);
+  if (!mode) return tl::unexpected(mode.error());
+  Result<HeightMap> map = load_height_map(path);
+  if (map) map->address = *mode;
+  return map;
+}
+
+Result<LoadedScene> load_scene_parts(const std::filesystem::path& path) {
+  Result<Scene> scene = load_scene(path);
+  if (!scene) return tl::unexpected(scene.error());
+  Result<Mesh> mesh = scene_mesh(*scene, load_mesh_file);
+  if (!mesh) return tl::unexpected(mesh.error());
+  Result<HeightMap> height = scene_height_map(*scene);
+  if (!height) return tl::unexpected(height.error());
+  return LoadedScene{std::move(*scene), std::move(*mesh), std::move(*height)};
+}
+
+Status write_text(const std::string& path, const std::string& text) {
+  if (path == "-") {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    return {};
+  }
+  std::string temporary = fmt::format("{}.{}.tmp", path, getpid());
+  {
+    std::ofstream file(temporary, std::ios::binary);
+    file << text;
+    file.flush();
+    if (!file) {
+      std::error_code ignored;
+      std::filesystem::remove(temporary, ignored);
+      return fail(ErrorCode::io, "cli.write", fmt::format("'{}' cannot be written", path), path);
+    }
+  }
+  std::error_code error;
+  std::filesystem::rename(temporary, path, error);
+  if (!error) return {};
+  std::error_code ignored;
+  std::filesystem::remove(temporary, ignored);
+  return fail(ErrorCode::io, "cli.write", fmt::format("'{}' cannot be written: {}", path, error.message()), path);
+}
+
+Status make_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) return fail(ErrorCode::io, "cli.folder", fmt::format("folder '{}' cannot be made: {}", path.string(), error.message()), path.string());
+  return {};
+}
+
+nlohmann::json to_json(const ErrorFigures& f) {
+  auto quantiles = [](const ErrorQuantiles& q) { return nlohmann::json{{"p50", q.p50}, {"p99", q.p99}, {"max", q.max}}; };
+  return {{"rays", f.rays},
+          {"ambiguous", f.ambiguous},
+          {"judged", f.judged},
+          {"missed_percent", f.percent(f.missed)},
+          {"false_hit_percent", f.percent(f.false_hit)},
+          {"wrong_layer_percent", f.percent(f.wrong_layer)},
+          {"wrong_percent", f.wrong_percent()},
+          {"exhausted_percent", f.percent(f.exhausted)},
+          {"non_finite", f.non_finite},
+          {"uv_texels", quantiles(f.uv_texels)},
+          {"height", quantiles(f.height)}};
+}
+
+Progress::Progress(std::string label, std::size_t total)
+    : label_(std::move(label)), total_(total), shown_(isatty(STDERR_FILENO) != 0) {}
+
+void Progress::advance(const std::string& what) {
+  ++done_;
+  if (!shown_) return;
+  constexpr std::size_t width = 30;
+  std::size_t filled = total_ ? std::min(width, width * done_ / total_) : width;
+  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{} {}", label_, "", filled, "", width - filled, done_, total_, what);
+}
+
+Progress::~Progress() {
+  if (shown_) fmt::print(stderr, "\r\033[K");
+}
+
+}  // namespace relievo::cli

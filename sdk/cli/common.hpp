@@ -1,0 +1,88 @@
+/// What the subcommands share: options, settings, progress and how errors end the program.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "relievo/backend.hpp"
+#include "relievo/measure.hpp"
+#include "relievo/render.hpp"
+
+namespace relievo::cli {
+
+/// Options of every subcommand, and the exit code that main returns.
+struct Context {
+  std::vector<std::string> folders;  ///< --techniques
+  bool json = false;
+  int exit_code = 0;
+
+  Result<Registry> registry() const;
+  /// Prints the error (gcc style on stderr, or JSON on stdout with --json) and sets the exit code.
+  void report(const Error& error);
+};
+
+/// Adds a subcommand with the options that all have; `run` returns a Status that becomes the exit code.
+CLI::App* add_command(CLI::App& app, Context& context, const std::string& name, const std::string& title,
+                      std::function<Status()> run);
+
+/// --set k=v, … : values by "owner.parameter" and filters by technique.
+struct Settings {
+  std::map<std::string, double> values;
+  std::map<std::string, HeightFilter> filters;
+};
+
+/// Parses `k=v` and `owner.k=v`; an unqualified key belongs to `only` (the command's single technique, or empty).
+/// Errors: "cli.set" with the nearest known name.
+Result<Settings> parse_settings(const Registry& registry, const std::vector<std::string>& given, const std::string& only);
+
+/// Parses and opens a backend; with `oracle` allowed the pointer is null.
+Result<std::unique_ptr<Backend>> open(const std::string& name, bool validation);
+
+/// "a,b,c" or repeated options → names; "all" → every technique.
+Result<std::vector<std::string>> technique_names(const Registry& registry, const std::vector<std::string>& given);
+
+Result<HeightMap> load_height(const std::string& path, const std::string& address);
+
+/// The scene's parts, loaded: mesh files go through Assimp.
+struct LoadedScene {
+  Scene scene;
+  Mesh mesh;
+  HeightMap height;
+};
+Result<LoadedScene> load_scene_parts(const std::filesystem::path& path);
+
+/// Writes a file atomically; "-" is stdout.
+Status write_text(const std::string& path, const std::string& text);
+Status make_folder(const std::filesystem::path& path);
+
+nlohmann::json to_json(const ErrorFigures& figures);
+
+/// A progress bar on stderr when that is a terminal; nothing otherwise.
+class Progress {
+ public:
+  Progress(std::string label, std::size_t total);
+  ~Progress();
+  void advance(const std::string& what);
+
+ private:
+  std::string label_;
+  std::size_t total_, done_ = 0;
+  bool shown_;
+};
+
+// One a file.
+void add_list(CLI::App& app, Context& context);
+void add_describe(CLI::App& app, Context& context);
+void add_compile(CLI::App& app, Context& context);
+void add_bake(CLI::App& app, Context& context);
+void add_trace(CLI::App& app, Context& context);
+void add_render(CLI::App& app, Context& context);
+void add_bench(CLI::App& app, Context& context);
+void add_conform(CLI::App& app, Context& context);
+void add_report(CLI::App& app, Context& context);
+
+}  // namespace relievo::cli

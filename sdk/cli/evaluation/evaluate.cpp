@@ -1,0 +1,76 @@
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "evaluation/evaluation.hpp"
+
+namespace relievo::cli {
+
+namespace {
+
+std::size_t steps_of(const EvaluationInput& input, std::size_t backends) {
+  std::size_t angles = 0, drawing = 0;
+  for (const RayCase& c : input.ray_cases) angles += c.angles.size();
+  for (const auto& [name, stage] : input.registry->stages) drawing += stage.mesh != "none";
+  return backends * (2 * angles + input.scenes.size() * (drawing + 1));
+}
+
+}  // namespace
+
+Result<Evaluation> evaluate(const EvaluationInput& input) {
+  Evaluation evaluation;
+  OpenBackends backends;
+  for (const std::string& name : input.backends) {
+    Result<std::unique_ptr<Backend>> backend = open(name, true);
+    if (!backend && backend.error().code == ErrorCode::unsupported) {
+      evaluation.not_run.push_back({"backend " + name, backend.error().message});
+      continue;
+    }
+    if (!backend) return tl::unexpected(backend.error());
+    evaluation.backends.push_back((*backend)->info());
+    backends[name] = std::move(*backend);
+  }
+  if (backends.empty()) {
+    return fail(ErrorCode::unsupported, "evaluation.no-backend", fmt::format("no backend is available: {}", evaluation.not_run.empty() ? "none was named" : evaluation.not_run.front().reason));
+  }
+  Progress progress("evaluate", steps_of(input, backends.size()));
+  for (auto part : {evaluate_rays, evaluate_pictures, evaluate_cracks}) {
+    if (Status status = part(input, backends, evaluation, progress); !status) return tl::unexpected(status.error());
+  }
+  judge(input, evaluation);
+  return evaluation;
+}
+
+Result<EvaluationInput> make_input(const Registry& registry, const std::vector<std::string>& techniques,
+                                   const std::vector<std::string>& scenes, const std::vector<std::string>& heights,
+                                   const std::string& address, const std::vector<std::string>& set) {
+  EvaluationInput input;
+  input.registry = &registry;
+  Result<std::vector<std::string>> names = technique_names(registry, techniques);
+  if (!names) return tl::unexpected(names.error());
+  input.techniques = *names;
+  Result<Settings> settings = parse_settings(registry, set, names->size() == 1 ? names->front() : "");
+  if (!settings) return tl::unexpected(settings.error());
+  input.values = settings->values;
+  for (const std::string& scene : scenes) {
+    Result<LoadedScene> parts = load_scene_parts(scene);
+    if (!parts) return tl::unexpected(parts.error());
+    input.scenes.emplace_back(std::filesystem::path(scene).stem().string(), std::move(*parts));
+  }
+  for (const std::string& item : heights) {
+    RayCase ray_case;
+    std::size_t colon = item.rfind(':');
+    std::string path = item;
+    if (colon != std::string::npos && item.find_first_not_of("0123456789.eE+-", colon + 1) == std::string::npos && colon + 1 < item.size()) {
+      path = item.substr(0, colon);
+      ray_case.scale = std::strtod(item.c_str() + colon + 1, nullptr);
+    }
+    Result<HeightMap> height = load_height(path, address);
+    if (!height) return tl::unexpected(height.error());
+    ray_case.name = std::filesystem::path(path).stem().string();
+    ray_case.height = std::move(*height);
+    input.ray_cases.push_back(std::move(ray_case));
+  }
+  return input;
+}
+
+}  // namespace relievo::cli

@@ -1,0 +1,114 @@
+/// What `conform` judges and `report` shows: every technique in every stage on every backend, against the oracle.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common.hpp"
+#include "relievo/measure.hpp"
+
+namespace relievo::cli {
+
+/// A height map to trace rays against, seen at several angles.
+struct RayCase {
+  std::string name;  ///< of the file, without folder and extension
+  HeightMap height;
+  double scale = 0.1;                  ///< height of the lid in texture widths
+  std::vector<double> angles = {60, 20, 8};  ///< degrees above the base plane
+};
+
+struct EvaluationInput {
+  const Registry* registry = nullptr;
+  std::vector<std::string> techniques;
+  std::vector<std::string> backends = {"vulkan", "opengl"};
+  std::vector<RayCase> ray_cases;
+  std::vector<std::pair<std::string, LoadedScene>> scenes;  ///< name and parts
+  std::map<std::string, double> values;                     ///< "owner.parameter"
+  int ray_image = 1024;         ///< rays a case: ray_image²
+  int repeats = 3;              ///< timed rounds, and runs that must be byte-identical
+  bool time = true;
+  std::filesystem::path pictures;  ///< folder for PNGs; empty = none are written
+};
+
+/// One technique on one backend over the rays of a case at an angle.
+struct RayRow {
+  std::string case_name, technique, backend, filter;
+  double angle = 0;
+  ErrorFigures error;
+  double seconds = -1;  ///< median; −1: not timed
+};
+
+/// Two backends on the same rays, filter exact.
+struct RayAgreement {
+  std::string case_name, technique;
+  double angle = 0;
+  std::uint64_t judged = 0;        ///< non-ambiguous rays
+  double equal_percent = 0;        ///< status equal and |Δt| ≤ 1e-5 relative
+};
+
+/// One picture.
+struct PictureRow {
+  std::string scene, stage, technique, backend;  ///< technique empty: the stage traces nothing
+  std::string file;             ///< PNG, relative to the pictures' folder; empty when none was written
+  std::string difference_file;  ///< against the oracle's picture; empty when there is none
+  double seconds = -1;
+  bool repeatable = true;       ///< all runs byte-identical
+  std::uint64_t degenerate_triangles = 0;
+};
+
+/// Pictures compared: two backends, or one backend's and the oracle's, or the prisms' and the finely displaced mesh's ("vertex").
+struct PictureAgreement {
+  std::string scene, stage, technique, left, right;
+  ImageDifference difference;
+};
+
+/// Cracks of the prism stage under a random vertex order.
+struct CrackRow {
+  std::string scene, technique, backend;
+  std::uint64_t seed = 0;
+  std::uint64_t cracks = 0;
+};
+
+/// A claim and what was found. Failing checks make `conform` exit with 4.
+struct Check {
+  std::string name, found, expected;
+  bool passed = false;
+};
+
+struct NotRun {
+  std::string what, reason;
+};
+
+struct Evaluation {
+  std::vector<BackendInfo> backends;
+  std::vector<RayRow> rays;
+  std::vector<RayAgreement> ray_agreements;
+  std::vector<PictureRow> pictures;
+  std::vector<PictureAgreement> picture_agreements;
+  std::vector<CrackRow> cracks;
+  std::vector<std::string> messages;  ///< of the validation layer and the debug output
+  std::vector<Check> checks;
+  std::vector<NotRun> not_run;
+};
+
+/// Runs everything. A backend that cannot be opened, or a stage that it cannot run, becomes a NotRun; an error of ours is returned.
+Result<Evaluation> evaluate(const EvaluationInput& input);
+
+/// The parts of `evaluate`, each filling its rows. `backends` holds the opened ones by name.
+using OpenBackends = std::map<std::string, std::unique_ptr<Backend>>;
+Status evaluate_rays(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress);
+Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress);
+Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress);
+/// The claims, from the rows.
+void judge(const EvaluationInput& input, Evaluation& evaluation);
+
+nlohmann::json to_json(const Evaluation& evaluation);
+
+/// Scenes and height files named on a command line → input. `heights` may be "file" or "file:scale".
+Result<EvaluationInput> make_input(const Registry& registry, const std::vector<std::string>& techniques,
+                                   const std::vector<std::string>& scenes, const std::vector<std::string>& heights,
+                                   const std::string& address, const std::vector<std::string>& set);
+
+}  // namespace relievo::cli

@@ -1,0 +1,57 @@
+#include <cmath>
+
+#include "evaluation/evaluation.hpp"
+
+namespace relievo::cli {
+
+namespace {
+
+nlohmann::json difference_json(const ImageDifference& d) {
+  nlohmann::json json = {{"within_percent", d.within_percent}, {"largest", d.largest}, {"mask_iou", d.mask_iou}};
+  if (std::isfinite(d.psnr)) json["psnr"] = d.psnr;  // infinite for equal pictures: left out
+  return json;
+}
+
+template <class Rows, class Convert>
+nlohmann::json list(const Rows& rows, Convert convert) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const auto& row : rows) json.push_back(convert(row));
+  return json;
+}
+
+}  // namespace
+
+nlohmann::json to_json(const Evaluation& e) {
+  using json = nlohmann::json;
+  json result;
+  result["schema"] = 1;
+  result["backends"] = list(e.backends, [](const BackendInfo& b) {
+    return json{{"name", b.name}, {"title", b.title}, {"device", b.device}, {"driver", b.driver}, {"api_version", b.api_version}};
+  });
+  result["rays"] = list(e.rays, [](const RayRow& r) {
+    json row = to_json(r.error);
+    row.update({{"case", r.case_name}, {"technique", r.technique}, {"backend", r.backend}, {"filter", r.filter}, {"angle", r.angle}, {"steps", r.error.mean_steps}, {"fetches", r.error.mean_fetches}});
+    if (r.seconds >= 0) row["seconds"] = r.seconds;
+    return row;
+  });
+  result["ray_agreements"] = list(e.ray_agreements, [](const RayAgreement& r) {
+    return json{{"case", r.case_name}, {"technique", r.technique}, {"angle", r.angle}, {"judged", r.judged}, {"equal_percent", r.equal_percent}};
+  });
+  result["pictures"] = list(e.pictures, [](const PictureRow& p) {
+    return json{{"scene", p.scene}, {"stage", p.stage}, {"technique", p.technique}, {"backend", p.backend}, {"file", p.file}, {"difference_file", p.difference_file}, {"seconds", p.seconds}, {"repeatable", p.repeatable}, {"degenerate_triangles", p.degenerate_triangles}};
+  });
+  result["picture_agreements"] = list(e.picture_agreements, [](const PictureAgreement& p) {
+    return json{{"scene", p.scene}, {"stage", p.stage}, {"technique", p.technique}, {"left", p.left}, {"right", p.right}, {"difference", difference_json(p.difference)}};
+  });
+  result["cracks"] = list(e.cracks, [](const CrackRow& c) {
+    return json{{"scene", c.scene}, {"technique", c.technique}, {"backend", c.backend}, {"seed", c.seed}, {"cracks", c.cracks}};
+  });
+  result["messages"] = e.messages;
+  result["checks"] = list(e.checks, [](const Check& c) {
+    return json{{"name", c.name}, {"found", c.found}, {"expected", c.expected}, {"passed", c.passed}};
+  });
+  result["not_run"] = list(e.not_run, [](const NotRun& n) { return json{{"what", n.what}, {"reason", n.reason}}; });
+  return result;
+}
+
+}  // namespace relievo::cli

@@ -1,0 +1,36 @@
+#include <algorithm>
+
+#include "common.hpp"
+
+namespace {
+
+/// glslc's spellings that CLI11 does not take: one dash, several letters.
+std::vector<std::string> long_options(int argc, char** argv) {
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  for (std::string& argument : arguments) {
+    if (argument == "-MD" || argument == "-MF" || argument == "-O0") argument.insert(0, "-");
+  }
+  std::reverse(arguments.begin(), arguments.end());  // the order that CLI11's parse takes
+  return arguments;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace relievo::cli;
+  CLI::App app{"Displacement-mapping techniques: compiled for every target, run on several APIs, measured against an exact oracle", "relievo"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", std::string("relievo ") + RELIEVO_VERSION);
+  Context context;
+  for (auto add : {add_list, add_describe, add_compile, add_bake, add_trace, add_render, add_bench, add_conform}) {
+    add(app, context);
+  }
+  try {
+    app.parse(long_options(argc, argv));
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 1;
+  } catch (const std::exception& error) {
+    context.report({relievo::ErrorCode::io, "cli.failure", error.what(), "", 0, 0});
+  }
+  return context.exit_code;
+}

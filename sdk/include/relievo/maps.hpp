@@ -1,0 +1,39 @@
+/// Baking: what techniques read besides the height map is computed by compute modules on any backend that has compute.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "relievo/backend.hpp"
+#include "relievo/compose.hpp"
+#include "relievo/height_map.hpp"
+
+namespace relievo {
+
+/// A map in memory: `channels` floats a texel, interleaved, row 0 first.
+struct MapData {
+  std::string name;
+  int width = 0, height = 0;  ///< texels
+  int channels = 1;           ///< 1–4
+  std::vector<float> texels;
+  AddressMode address = AddressMode::repeat;
+};
+
+/// Maps by name; "height" is always there.
+using MapSet = std::map<std::string, MapData, std::less<>>;
+
+/// The set that holds the height map alone.
+MapSet map_set(const HeightMap& height_map);
+
+/// Bakes `map` and whatever it needs first into `maps`, which holds "height"; maps that are there already stay.
+/// `values` are keyed "map.parameter"; those of other owners are ignored.
+/// Errors: "describe.unknown-map", "compose.*", "compile.*", "backend.*"; "maps.non-finite" if the result is not finite.
+Status bake_map(Backend& backend, const Registry& registry, std::string_view map, MapSet& maps,
+                const std::map<std::string, double>& values = {}, std::vector<std::string>* messages = nullptr);
+
+/// The texture of a map: 1, 2 or 4 float channels (3 become 4), filtered linearly, with the address mode of the map.
+Texture map_texture(const MapData& map);
+
+}  // namespace relievo

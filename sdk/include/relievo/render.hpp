@@ -1,0 +1,40 @@
+/// Pictures of a scene: a mesh, a technique and a drawing stage as a Job.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "relievo/backend.hpp"
+#include "relievo/compile.hpp"
+#include "relievo/image.hpp"
+#include "relievo/maps.hpp"
+#include "relievo/scene.hpp"
+#include "relievo/trace.hpp"
+
+namespace relievo {
+
+struct RenderRequest {
+  std::string stage;
+  std::string technique;  ///< bound to every role of the stage; empty for stages that trace nothing
+  HeightFilter filter = HeightFilter::hardware;
+  Aov aov = Aov::color;
+  std::map<std::string, double> values;  ///< "owner.parameter"; those of other owners are ignored
+};
+
+struct RenderResult {
+  Image image;                        ///< 4 channels; alpha 1 where something was drawn. colour: [0,1]; others: see Aov
+  std::vector<std::uint8_t> color;    ///< aov color only: the 8-bit pixels as the backend wrote them
+  double seconds = -1;                ///< of the draw, by the GPU's clock; −1 without timestamps
+  std::uint64_t degenerate_triangles = 0;  ///< drawn undisplaced
+};
+
+/// One Draw of the scene's mesh. `mesh` is checked and has one normal a position (scene_mesh does both).
+Result<Job> make_render_job(const Registry& registry, const Scene& scene, const Mesh& mesh, const MapSet& maps,
+                            const RenderRequest& request, std::string_view shader_target);
+
+/// Bakes what is missing in `maps`, makes the job and runs it.
+Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh, MapSet& maps,
+                            const RenderRequest& request, std::vector<std::string>* messages = nullptr);
+
+}  // namespace relievo

@@ -1,0 +1,57 @@
+/// Rays in, hits out, on a backend: the `ray` stage as a Job.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "relievo/backend.hpp"
+#include "relievo/compile.hpp"
+#include "relievo/maps.hpp"
+#include "relievo/oracle.hpp"
+
+namespace relievo {
+
+/// One technique with its settings.
+struct TraceRequest {
+  std::string technique;
+  HeightFilter filter = HeightFilter::exact;
+  bool count_cost = true;               ///< count steps and fetches; off for timing
+  std::map<std::string, double> values;  ///< "owner.parameter"; those of other owners are ignored
+};
+
+/// A composed and compiled permutation in the form that Jobs carry.
+struct PreparedProgram {
+  ComposedProgram composed;
+  ShaderProgram program;
+};
+
+/// Composes and compiles for what a backend consumes (BackendInfo::shader_target, "spirv" or a target's name).
+/// `values` of owners that the permutation has not are dropped.
+Result<PreparedProgram> prepare(const Registry& registry, Permutation permutation, std::string_view shader_target);
+
+/// A Job that traces all rays with each request in turn, `repeats` times over, interleaved.
+/// Rays keep their order; whole tiles of u and v are split off first, so that uv may be far from 0.
+/// `maps` holds every map that the techniques require. Errors: as of compose and compile; "trace.no-rays".
+Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const Ray> rays,
+                           std::span<const TraceRequest> requests, std::string_view shader_target, int repeats = 1);
+
+struct TraceResult {
+  std::vector<Hit> hits;        ///< one a ray; u and v in the rays' own tiles
+  std::vector<double> seconds;  ///< one a repeat, by the GPU's clock; empty without timestamps
+};
+
+/// Reads the hits of request k back from a result of make_trace_job.
+std::vector<TraceResult> read_trace(const Job& job, const JobResult& result, std::span<const Ray> rays,
+                                    AddressMode address, std::size_t requests);
+
+/// Bakes what is missing in `maps`, makes the job and runs it. `messages` receives validation and debug output.
+Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registry, MapSet& maps, std::span<const Ray> rays,
+                                       std::span<const TraceRequest> requests, int repeats = 1,
+                                       std::vector<std::string>* messages = nullptr);
+
+/// An image of rays that look down at `angle` degrees above the base plane on a map whose lid is `scale` texture widths
+/// high, with a little perspective: `width`×`height` rays, row by row, each starting on the lid.
+std::vector<Ray> make_view_rays(double angle_degrees, double scale, int width = 1024, int height = 1024);
+
+}  // namespace relievo

@@ -1,0 +1,100 @@
+#include "compile/diagnostics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <optional>
+
+namespace relievo {
+
+namespace {
+
+constexpr std::size_t kMaxListed = 10;
+constexpr std::string_view kError = "ERROR: ";
+
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())) != 0) text.remove_prefix(1);
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.remove_suffix(1);
+  return text;
+}
+
+/// Splits "path:12: message"; the path may itself hold colons and spaces, so the first ":<digits>: " decides.
+std::optional<Diagnostic> split_place(std::string_view text) {
+  for (std::size_t colon = text.find(':'); colon != std::string_view::npos; colon = text.find(':', colon + 1)) {
+    int line = 0;
+    const char* first = text.data() + colon + 1;
+    const char* last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(first, last, line);
+    if (error != std::errc() || last - end < 2 || end[0] != ':' || end[1] != ' ') continue;
+    const std::string_view message(end + 1, static_cast<std::size_t>(last - end - 1));
+    return Diagnostic{std::string(text.substr(0, colon)), line, std::string(trim(message))};
+  }
+  return std::nullopt;
+}
+
+/// "2 compilation errors.  No code generated." and "'' : compilation terminated" say nothing of their own.
+bool is_summary(std::string_view message) {
+  return message.find("compilation errors.") != std::string_view::npos ||
+         message.find("compilation terminated") != std::string_view::npos;
+}
+
+/// glslang writes "'token' : what"; without a token it leaves "'' : ", which reads as noise.
+std::string_view without_empty_token(std::string_view message) {
+  constexpr std::string_view kEmpty = "'' :";
+  if (message.substr(0, kEmpty.size()) == kEmpty) message.remove_prefix(kEmpty.size());
+  return trim(message);
+}
+
+std::string place_of(const Diagnostic& diagnostic) {
+  return diagnostic.file.empty() ? std::string() : fmt::format("{}:{}: ", diagnostic.file, diagnostic.line);
+}
+
+}  // namespace
+
+std::vector<Diagnostic> parse_glslang_log(std::string_view log) {
+  std::vector<Diagnostic> diagnostics;
+  bool continues = false;
+  while (!log.empty()) {
+    const std::size_t end = std::min(log.find('\n'), log.size());
+    std::string_view text = trim(log.substr(0, end));
+    log.remove_prefix(std::min(end + 1, log.size()));
+    if (text.substr(0, kError.size()) != kError) {
+      if (text.empty() || text.substr(0, 9) == "WARNING: ") continues = false;
+      if (continues) diagnostics.back().message += fmt::format(" {}", text);
+      continue;
+    }
+    text.remove_prefix(kError.size());
+    continues = !is_summary(text);
+    if (!continues) continue;
+    Diagnostic diagnostic = split_place(text).value_or(Diagnostic{{}, 0, std::string(text)});
+    diagnostic.message = without_empty_token(diagnostic.message);
+    diagnostics.push_back(std::move(diagnostic));
+  }
+  return diagnostics;
+}
+
+Error glsl_error(std::string_view log, std::string_view permutation_key) {
+  const std::vector<Diagnostic> diagnostics = parse_glslang_log(log);
+  Error error{ErrorCode::compile, "compile.glsl", {}, {}, 0, 0};
+  const auto placed =
+      std::find_if(diagnostics.begin(), diagnostics.end(), [](const Diagnostic& d) { return !d.file.empty(); });
+  if (placed != diagnostics.end()) {
+    error.file = placed->file;
+    error.line = placed->line;
+  }
+  if (diagnostics.empty()) {
+    error.message = fmt::format("permutation '{}' does not compile; the compiler gives no reason", permutation_key);
+  } else if (diagnostics.size() == 1) {
+    error.message = fmt::format("{} (permutation '{}')", diagnostics.front().message, permutation_key);
+  } else {
+    error.message = fmt::format("{} errors (permutation '{}')", diagnostics.size(), permutation_key);
+    for (std::size_t i = 0; i < std::min(diagnostics.size(), kMaxListed); ++i) {
+      error.message += fmt::format("\n  {}{}", place_of(diagnostics[i]), diagnostics[i].message);
+    }
+  }
+  return error;
+}
+
+}  // namespace relievo

@@ -1,0 +1,112 @@
+#include "compile/front_end.hpp"
+
+#include <fmt/format.h>
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
+
+#include <memory>
+#include <string>
+
+#include "compile/complexity.hpp"
+#include "compile/diagnostics.hpp"
+
+namespace relievo {
+
+namespace {
+
+// Cascading: several errors of one shader are reported together.
+constexpr auto kMessages =
+    static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules | EShMsgCascadingErrors | EShMsgSuppressWarnings);
+
+/// glslang's process-wide tables are made once, and live until the process ends.
+void initialize_once() {
+  static const bool initialized = glslang::InitializeProcess();
+  static_cast<void>(initialized);
+}
+
+EShLanguage glslang_stage(ShaderStage stage) {
+  switch (stage) {
+    case ShaderStage::vertex:
+      return EShLangVertex;
+    case ShaderStage::tessellation_control:
+      return EShLangTessControl;
+    case ShaderStage::tessellation_evaluation:
+      return EShLangTessEvaluation;
+    case ShaderStage::geometry:
+      return EShLangGeometry;
+    case ShaderStage::fragment:
+      return EShLangFragment;
+    case ShaderStage::compute:
+      return EShLangCompute;
+  }
+  return EShLangCompute;
+}
+
+/// A parsed shader with the strings that glslang keeps pointers to.
+class ParsedShader {
+ public:
+  explicit ParsedShader(const ComposedShader& source)
+      : shader_(glslang_stage(source.stage)),
+        text_(source.text.c_str()),
+        length_(static_cast<int>(source.text.size())),
+        name_(fmt::format("composed.{}.glsl", to_string(source.stage))),
+        name_pointer_(name_.c_str()) {
+    shader_.setStringsWithLengthsAndNames(&text_, &length_, &name_pointer_, 1);
+    shader_.setEnvInput(glslang::EShSourceGlsl, shader_.getStage(), glslang::EShClientVulkan, 100);
+    shader_.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_0);
+    shader_.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
+  }
+
+  bool parse() { return shader_.parse(GetDefaultResources(), 450, false, kMessages); }
+  glslang::TShader& shader() { return shader_; }
+
+ private:
+  glslang::TShader shader_;
+  const char* text_;
+  int length_;
+  std::string name_;
+  const char* name_pointer_;
+};
+
+SpirvWords generate_spirv(const glslang::TIntermediate& intermediate) {
+  glslang::SpvOptions options;
+  options.generateDebugInfo = true;
+  options.disableOptimizer = true;
+  options.validate = false;
+  SpirvWords words;
+  spv::SpvBuildLogger logger;
+  glslang::GlslangToSpv(intermediate, words, &logger, &options);
+  return words;
+}
+
+tl::unexpected<Error> too_complex(const ComposedShader& source, std::string_view key) {
+  return fail(ErrorCode::compile, "compile.glsl",
+              fmt::format("the {} shader chains more than {} operators in one expression (permutation '{}')",
+                          to_string(source.stage), kMaxChainedOperators, key));
+}
+
+}  // namespace
+
+Result<std::vector<SpirvWords>> run_front_end(const ComposedProgram& program) {
+  initialize_once();
+  std::vector<std::unique_ptr<ParsedShader>> shaders;
+  glslang::TProgram linked;  // destroyed before the shaders it refers to
+  for (const ComposedShader& source : program.shaders) {
+    if (has_runaway_expression(source.text)) return too_complex(source, program.key);
+    shaders.push_back(std::make_unique<ParsedShader>(source));
+    ParsedShader& parsed = *shaders.back();
+    if (!parsed.parse()) return tl::unexpected(glsl_error(parsed.shader().getInfoLog(), program.key));
+    linked.addShader(&parsed.shader());
+  }
+  if (!linked.link(kMessages)) return tl::unexpected(glsl_error(linked.getInfoLog(), program.key));
+
+  std::vector<SpirvWords> modules;
+  for (const auto& parsed : shaders) {
+    const glslang::TIntermediate* intermediate = linked.getIntermediate(parsed->shader().getStage());
+    modules.push_back(generate_spirv(*intermediate));
+  }
+  return modules;
+}
+
+}  // namespace relievo

@@ -1,0 +1,77 @@
+#include "compile/optimize.hpp"
+
+#include <fmt/format.h>
+
+#include <spirv-tools/libspirv.hpp>
+#include <spirv-tools/optimizer.hpp>
+
+namespace relievo {
+
+namespace {
+
+constexpr spv_target_env kEnvironment = SPV_ENV_VULKAN_1_0;
+
+spvtools::MessageConsumer collect_into(std::string& messages) {
+  return [&messages](spv_message_level_t level, const char*, const spv_position_t&, const char* message) {
+    if (level > SPV_MSG_ERROR) return;
+    if (!messages.empty()) messages += "; ";
+    messages += message;
+  };
+}
+
+/// spirv-opt's performance passes, once each, without those that rewrite arithmetic: contracting a·b+c into fma would
+/// let targets disagree about a hit, and the loops come out as their author wrote them. Takes two thirds of the time.
+void register_passes(spvtools::Optimizer& optimizer) {
+  optimizer.RegisterPass(spvtools::CreateWrapOpKillPass())
+      .RegisterPass(spvtools::CreateDeadBranchElimPass())
+      .RegisterPass(spvtools::CreateMergeReturnPass())
+      .RegisterPass(spvtools::CreateInlineExhaustivePass())
+      .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+      .RegisterPass(spvtools::CreatePrivateToLocalPass())
+      .RegisterPass(spvtools::CreateScalarReplacementPass())
+      .RegisterPass(spvtools::CreateLocalAccessChainConvertPass())
+      .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
+      .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
+      .RegisterPass(spvtools::CreateSSARewritePass())
+      .RegisterPass(spvtools::CreateAggressiveDCEPass())
+      .RegisterPass(spvtools::CreateCCPPass())
+      .RegisterPass(spvtools::CreateDeadBranchElimPass())
+      .RegisterPass(spvtools::CreateVectorDCEPass())
+      .RegisterPass(spvtools::CreateDeadInsertElimPass())
+      .RegisterPass(spvtools::CreateRedundancyEliminationPass())
+      .RegisterPass(spvtools::CreateAggressiveDCEPass())
+      .RegisterPass(spvtools::CreateBlockMergePass());
+}
+
+tl::unexpected<Error> invalid(std::string_view key, std::string_view when, const std::string& messages) {
+  return fail(ErrorCode::compile, "compile.spirv-invalid",
+              fmt::format("the SPIR-V of permutation '{}' is invalid {}: {}", key, when, messages));
+}
+
+}  // namespace
+
+Status validate_spirv(const SpirvWords& words, std::string_view permutation_key, std::string_view when) {
+  std::string messages;
+  spvtools::SpirvTools tools(kEnvironment);
+  tools.SetMessageConsumer(collect_into(messages));
+  spvtools::ValidatorOptions options;
+  options.SetFriendlyNames(false);  // making names costs more than validating
+  if (!tools.Validate(words.data(), words.size(), options)) return invalid(permutation_key, when, messages);
+  return {};
+}
+
+Result<SpirvWords> optimize_spirv(const SpirvWords& words, std::string_view permutation_key) {
+  std::string messages;
+  spvtools::Optimizer optimizer(kEnvironment);
+  optimizer.SetMessageConsumer(collect_into(messages));
+  register_passes(optimizer);
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(false);  // the pipeline validates before and after
+  SpirvWords optimized;
+  if (!optimizer.Run(words.data(), words.size(), &optimized, options)) {
+    return invalid(permutation_key, "for the optimizer", messages);
+  }
+  return optimized;
+}
+
+}  // namespace relievo

@@ -1,0 +1,214 @@
+#include "relievo/compose.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "compose/include.hpp"
+#include "compose/parameters.hpp"
+
+namespace relievo {
+
+namespace {
+
+/// What one permutation is made of, after all names are resolved.
+struct Parts {
+  const StageDescriptor* stage = nullptr;
+  std::map<std::string, const TechniqueDescriptor*> roles;
+  std::vector<const TechniqueDescriptor*> techniques;  // without repetition
+  std::vector<const MapDescriptor*> maps;              // by set and binding
+};
+
+template <class T>
+void add_once(std::vector<T>& list, T value) {
+  if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
+}
+
+Status add_maps(const Registry& registry, const std::vector<std::string>& names, std::vector<const MapDescriptor*>& maps) {
+  for (const std::string& name : names) {
+    Result<const MapDescriptor*> map = registry.map(name);
+    if (!map) return tl::unexpected(map.error());
+    add_once(maps, *map);
+  }
+  return {};
+}
+
+void sort_by_binding(std::vector<const MapDescriptor*>& maps) {
+  std::sort(maps.begin(), maps.end(), [](const MapDescriptor* a, const MapDescriptor* b) {
+    return std::pair(a->set, a->binding) < std::pair(b->set, b->binding);
+  });
+}
+
+Status add_role(const Registry& registry, const Permutation& permutation, const std::string& role, Parts& parts) {
+  auto bound = permutation.roles.find(role);
+  if (bound == permutation.roles.end()) {
+    return fail(ErrorCode::usage, "compose.role-missing",
+                fmt::format("stage '{}' calls the role '{}', which no technique is bound to", permutation.stage, role));
+  }
+  Result<const TechniqueDescriptor*> technique = registry.technique(bound->second);
+  if (!technique) return tl::unexpected(technique.error());
+  parts.roles[role] = *technique;
+  add_once(parts.techniques, *technique);
+  return add_maps(registry, (*technique)->maps, parts.maps);
+}
+
+Result<Parts> resolve(const Registry& registry, const Permutation& permutation) {
+  Parts parts;
+  Result<const StageDescriptor*> stage = registry.stage(permutation.stage);
+  if (!stage) return tl::unexpected(stage.error());
+  parts.stage = *stage;
+  if (Status status = add_maps(registry, (*stage)->maps, parts.maps); !status) return tl::unexpected(status.error());
+  for (const std::string& role : (*stage)->roles) {
+    if (Status status = add_role(registry, permutation, role, parts); !status) return tl::unexpected(status.error());
+  }
+  for (const auto& [role, technique] : permutation.roles) {
+    if (parts.roles.contains(role)) continue;
+    return fail(ErrorCode::usage, "compose.role-unknown",
+                fmt::format("stage '{}' has no role '{}'; expected {}", permutation.stage, role,
+                            (*stage)->roles.empty() ? "none: it traces nothing" : fmt::format("{}", fmt::join((*stage)->roles, ", "))));
+  }
+  sort_by_binding(parts.maps);
+  return parts;
+}
+
+std::vector<ParameterOwner> owners_of(const Parts& parts) {
+  std::vector<ParameterOwner> owners;
+  if (parts.stage) owners.push_back({parts.stage->name, &parts.stage->parameters});
+  for (const TechniqueDescriptor* technique : parts.techniques) owners.push_back({technique->name, &technique->parameters});
+  for (const MapDescriptor* map : parts.maps) owners.push_back({map->name, &map->parameters});
+  return owners;
+}
+
+/// Numbers that modules may ask for by name; defined for every shader, in one place.
+std::string axis_macros(HeightFilter filter, AddressMode address, bool count, Aov aov) {
+  std::string text = "#version 450\n#extension GL_GOOGLE_cpp_style_line_directive : require\n";
+  constexpr const char* address_names[] = {"REPEAT", "MIRROR", "CLAMP", "CLIP"};
+  for (int i = 0; i < 4; ++i) text += fmt::format("#define RELIEVO_ADDRESS_{} {}\n", address_names[i], i);
+  constexpr const char* aov_names[] = {"COLOR", "DEPTH", "NORMAL", "UV", "STEPS", "STATUS", "RAY_ORIGIN", "RAY_DIRECTION"};
+  for (int i = 0; i < 8; ++i) text += fmt::format("#define RELIEVO_AOV_{} {}\n", aov_names[i], i);
+  text += fmt::format("#define RELIEVO_ADDRESS {}\n", static_cast<int>(address));
+  text += fmt::format("#define RELIEVO_FILTER_EXACT {}\n", filter == HeightFilter::exact ? 1 : 0);
+  text += fmt::format("#define RELIEVO_COUNT {}\n", count ? 1 : 0);
+  text += fmt::format("#define RELIEVO_AOV {}\n", static_cast<int>(aov));
+  return text;
+}
+
+Result<std::string> declare_maps(const std::vector<const MapDescriptor*>& maps, SourceExpander& expander) {
+  std::string text;
+  for (const MapDescriptor* map : maps) {
+    text += fmt::format("layout(set = {}, binding = {}) uniform highp sampler2D {};\n", map->set, map->binding, map->sampler);
+    if (map->access.empty()) continue;
+    Result<std::string> access = expander.expand(map->access);
+    if (!access) return access;
+    text += *access;
+  }
+  return text;
+}
+
+/// Only what a shader's own text asks for goes into it: features that it does not use cost nothing.
+Parts parts_used_by(const Registry& registry, const Parts& all, const std::string& module_text) {
+  Parts used;
+  used.stage = all.stage;
+  for (const auto& [role, technique] : all.roles) {
+    if (module_text.find("relievo_" + role + "_trace") == std::string::npos) continue;
+    used.roles[role] = technique;
+    add_once(used.techniques, technique);
+    for (const std::string& name : technique->maps) add_once(used.maps, &registry.maps.find(name)->second);
+  }
+  for (const MapDescriptor* map : all.maps) {
+    if (module_text.find("relievo_" + map->name + "_") != std::string::npos) add_once(used.maps, map);
+  }
+  sort_by_binding(used.maps);
+  return used;
+}
+
+Result<ComposedShader> compose_shader(const Registry& registry, const Parts& all, const StageShader& shader,
+                                      const std::string& macros, const std::vector<ParameterSlot>& slots) {
+  SourceExpander scout(registry.sources);
+  Result<std::string> alone = scout.expand(shader.module);
+  if (!alone) return tl::unexpected(alone.error());
+  Parts used = parts_used_by(registry, all, *alone);
+
+  SourceExpander expander(registry.sources);
+  std::string text = macros + declare_parameters(slots);
+  Result<std::string> maps = declare_maps(used.maps, expander);
+  if (!maps) return tl::unexpected(maps.error());
+  text += *maps;
+  for (const TechniqueDescriptor* technique : used.techniques) {
+    Result<std::string> module = expander.expand(technique->module);
+    if (!module) return tl::unexpected(module.error());
+    text += *module;
+  }
+  for (const auto& [role, technique] : used.roles) text += fmt::format("#define relievo_{}_trace {}_trace\n", role, technique->name);
+  Result<std::string> module = expander.expand(shader.module);
+  if (!module) return tl::unexpected(module.error());
+  text += *module;
+  return ComposedShader{shader.stage, std::move(text), expander.files()};
+}
+
+FeatureSet features_of(const Parts& parts) {
+  FeatureSet features = parts.stage->features;
+  for (const TechniqueDescriptor* technique : parts.techniques) {
+    features.insert(technique->features.begin(), technique->features.end());
+  }
+  return features;
+}
+
+}  // namespace
+
+Result<ComposedProgram> compose(const Registry& registry, const Permutation& permutation) {
+  Result<Parts> parts = resolve(registry, permutation);
+  if (!parts) return tl::unexpected(parts.error());
+  Result<std::vector<ParameterSlot>> slots = assign_parameters(owners_of(*parts), permutation.values, permutation.binding_times);
+  if (!slots) return tl::unexpected(slots.error());
+
+  ComposedProgram program;
+  program.key = permutation.key();
+  program.stage = permutation.stage;
+  program.parameters = *slots;
+  program.parameter_block_size = parameter_block_size(*slots);
+  program.features = features_of(*parts);
+  for (const MapDescriptor* map : parts->maps) program.maps.push_back({map->name, map->sampler, map->set, map->binding});
+  bool count = permutation.count_cost || permutation.aov == Aov::steps;
+  std::string macros = axis_macros(permutation.filter, permutation.address, count, permutation.aov);
+  for (const StageShader& shader : parts->stage->shaders) {
+    Result<ComposedShader> composed = compose_shader(registry, *parts, shader, macros, *slots);
+    if (!composed) return tl::unexpected(composed.error());
+    program.shaders.push_back(std::move(*composed));
+  }
+  return program;
+}
+
+Result<ComposedProgram> compose_bake(const Registry& registry, std::string_view map_name, AddressMode address,
+                                     const std::map<std::string, double>& values) {
+  Result<const MapDescriptor*> map = registry.map(map_name);
+  if (!map) return tl::unexpected(map.error());
+  if ((*map)->module.empty()) {
+    return fail(ErrorCode::usage, "compose.provided-map", fmt::format("map '{}' is given by the caller: there is nothing to bake", map_name));
+  }
+  std::vector<const MapDescriptor*> inputs;
+  if (Status status = add_maps(registry, (*map)->inputs, inputs); !status) return tl::unexpected(status.error());
+  sort_by_binding(inputs);
+  std::vector<ParameterOwner> owners = {{(*map)->name, &(*map)->parameters}};
+  for (const MapDescriptor* input : inputs) owners.push_back({input->name, &input->parameters});
+  Result<std::vector<ParameterSlot>> slots = assign_parameters(owners, values, {});
+  if (!slots) return tl::unexpected(slots.error());
+
+  ComposedProgram program;
+  program.key = fmt::format("bake={}/{}", map_name, to_string(address));
+  program.stage = "bake";
+  program.parameters = *slots;
+  program.parameter_block_size = parameter_block_size(*slots);
+  program.features = (*map)->features;
+  for (const MapDescriptor* input : inputs) program.maps.push_back({input->name, input->sampler, input->set, input->binding});
+
+  SourceExpander expander(registry.sources);
+  std::string text = axis_macros(HeightFilter::exact, address, false, Aov::color) + declare_parameters(*slots);
+  Result<std::string> maps = declare_maps(inputs, expander);
+  if (!maps) return tl::unexpected(maps.error());
+  Result<std::string> module = expander.expand((*map)->module);
+  if (!module) return tl::unexpected(module.error());
+  program.shaders.push_back({ShaderStage::compute, text + *maps + *module, expander.files()});
+  return program;
+}
+
+}  // namespace relievo

@@ -1,0 +1,103 @@
+#include "image/file.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <system_error>
+
+namespace relievo {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Closer {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using FileHandle = std::unique_ptr<std::FILE, Closer>;
+
+/// Unlike any other writer's, in this process or another.
+fs::path temporary_name(const fs::path& path) {
+  static std::atomic<unsigned> counter{0};
+  const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+  fs::path name = path;
+  name += fmt::format(".{:x}-{}.tmp", static_cast<unsigned long long>(now), counter++);
+  return name;
+}
+
+/// Empty when all is well, else the system's reason. `mode` "wbx" refuses a file that exists.
+std::string write_bytes(const fs::path& path, const char* mode, std::span<const std::uint8_t> bytes) {
+  errno = 0;
+  FileHandle file(std::fopen(path.string().c_str(), mode));
+  if (!file) return std::strerror(errno);
+  const bool written = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
+  const bool closed = std::fclose(file.release()) == 0;
+  return written && closed ? std::string() : std::strerror(errno);
+}
+
+std::string replace_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  const fs::path temporary = temporary_name(path);
+  std::string reason = write_bytes(temporary, "wbx", bytes);
+  std::error_code code;
+  if (reason.empty()) {
+    fs::rename(temporary, path, code);
+    if (code) reason = code.message();
+  }
+  std::error_code ignored;
+  if (!reason.empty()) fs::remove(temporary, ignored);
+  return reason;
+}
+
+}  // namespace
+
+std::string short_name(const fs::path& path) {
+  return path.has_filename() ? path.filename().string() : path.string();
+}
+
+tl::unexpected<Error> file_error(const fs::path& path, std::string id, const std::string& rest) {
+  return fail(ErrorCode::io, std::move(id), fmt::format("'{}' {}", short_name(path), rest), path.string());
+}
+
+Result<std::vector<std::uint8_t>> read_file(const fs::path& path, const std::string& kind) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (status.type() == fs::file_type::not_found) return file_error(path, kind + ".missing", "does not exist");
+  if (fs::is_directory(status)) return file_error(path, kind + ".unreadable", "is a folder, not a file");
+  errno = 0;
+  FileHandle file(std::fopen(path.string().c_str(), "rb"));
+  if (!file) return file_error(path, kind + ".unreadable", fmt::format("cannot be opened: {}", std::strerror(errno)));
+
+  std::vector<std::uint8_t> bytes;
+  const std::uintmax_t size = fs::is_regular_file(status) ? fs::file_size(path, code) : 0;
+  if (!code) bytes.reserve(static_cast<std::size_t>(size));
+  std::uint8_t block[65536];
+  while (const std::size_t count = std::fread(block, 1, sizeof block, file.get())) {
+    bytes.insert(bytes.end(), block, block + count);
+  }
+  if (std::ferror(file.get())) {
+    return file_error(path, kind + ".unreadable", fmt::format("cannot be read: {}", std::strerror(errno)));
+  }
+  if (bytes.empty()) return file_error(path, kind + ".empty", "is empty");
+  return bytes;
+}
+
+Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes, const std::string& kind) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  const bool in_place = fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+  std::string reason;
+  if (fs::is_directory(status)) {
+    reason = "it is a folder";
+  } else {
+    reason = in_place ? write_bytes(path, "wb", bytes) : replace_file(path, bytes);
+  }
+  if (!reason.empty()) return file_error(path, kind + ".write", fmt::format("cannot be written: {}", reason));
+  return {};
+}
+
+}  // namespace relievo

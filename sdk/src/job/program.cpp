@@ -1,0 +1,98 @@
+#include "job/program.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace relievo {
+
+Result<PreparedProgram> prepare_composed(ComposedProgram composed, std::string_view shader_target) {
+  std::vector<Target> targets;
+  if (shader_target != "spirv") {
+    Result<Target> target = parse_target(shader_target);
+    if (!target) return tl::unexpected(target.error());
+    targets.push_back(*target);
+  }
+  Result<CompiledProgram> compiled = compile(composed, targets);
+  if (!compiled) return tl::unexpected(compiled.error());
+  ShaderProgram program = to_shader_program(composed, *compiled);
+  return PreparedProgram{std::move(composed), std::move(program)};
+}
+
+namespace {
+
+bool owns(const Registry& registry, const Permutation& permutation, const std::string& key) {
+  std::string owner = key.substr(0, key.find('.'));
+  if (owner == permutation.stage) return true;
+  std::vector<std::string> maps;
+  if (auto stage = registry.stages.find(permutation.stage); stage != registry.stages.end()) maps = stage->second.maps;
+  for (const auto& [role, name] : permutation.roles) {
+    if (owner == name) return true;
+    auto technique = registry.techniques.find(name);
+    if (technique != registry.techniques.end()) {
+      maps.insert(maps.end(), technique->second.maps.begin(), technique->second.maps.end());
+    }
+  }
+  return std::find(maps.begin(), maps.end(), owner) != maps.end();
+}
+
+}  // namespace
+
+Result<PreparedProgram> prepare(const Registry& registry, Permutation permutation, std::string_view shader_target) {
+  std::erase_if(permutation.values, [&](const auto& entry) { return !owns(registry, permutation, entry.first); });
+  Result<ComposedProgram> composed = compose(registry, permutation);
+  if (!composed) return tl::unexpected(composed.error());
+  return prepare_composed(std::move(*composed), shader_target);
+}
+
+Result<std::vector<std::string>> required_maps(const Registry& registry, std::string_view stage_name,
+                                               std::string_view technique_name) {
+  Result<const StageDescriptor*> stage = registry.stage(stage_name);
+  if (!stage) return tl::unexpected(stage.error());
+  std::vector<std::string> maps = (*stage)->maps;
+  if (technique_name.empty()) return maps;
+  Result<const TechniqueDescriptor*> technique = registry.technique(technique_name);
+  if (!technique) return tl::unexpected(technique.error());
+  maps.insert(maps.end(), (*technique)->maps.begin(), (*technique)->maps.end());
+  return maps;
+}
+
+Buffer make_buffer(std::string name, const void* data, std::size_t size) {
+  Buffer buffer{std::move(name), size, std::vector<std::byte>(size)};
+  std::memcpy(buffer.data.data(), data, size);
+  return buffer;
+}
+
+int bind_buffer(int set, int binding, Buffer buffer, Job& job, std::vector<ResourceBinding>& resources) {
+  int index = static_cast<int>(job.buffers.size());
+  job.buffers.push_back(std::move(buffer));
+  resources.push_back({set, binding, index});
+  return index;
+}
+
+void bind_maps(const ComposedProgram& composed, const MapSet& maps, Job& job, std::vector<ResourceBinding>& resources) {
+  for (const MapSlot& slot : composed.maps) {
+    auto known = std::find_if(job.textures.begin(), job.textures.end(), [&](const Texture& t) { return t.name == slot.map; });
+    int index = static_cast<int>(known - job.textures.begin());
+    if (known == job.textures.end()) job.textures.push_back(map_texture(maps.at(slot.map)));
+    resources.push_back({slot.set, slot.binding, index});
+  }
+}
+
+void bind_parameters(const ComposedProgram& composed, Job& job, std::vector<ResourceBinding>& resources) {
+  if (composed.parameter_block_size == 0) return;
+  std::vector<std::byte> block = parameter_block(composed);
+  bind_buffer(0, 0, make_buffer("Parameters", block.data(), block.size()), job, resources);
+}
+
+void keep_contract(const ShaderProgram& program, std::vector<ResourceBinding>& resources) {
+  std::erase_if(resources, [&](const ResourceBinding& r) {
+    return std::none_of(program.bindings.begin(), program.bindings.end(),
+                        [&](const BindingSlot& s) { return s.set == r.set && s.binding == r.binding; });
+  });
+}
+
+void append_messages(const JobResult& result, std::vector<std::string>* messages) {
+  if (messages) messages->insert(messages->end(), result.messages.begin(), result.messages.end());
+}
+
+}  // namespace relievo

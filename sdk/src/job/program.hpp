@@ -1,0 +1,34 @@
+/// What the makers of Jobs share: programs, and binding buffers and maps to a command.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "relievo/maps.hpp"
+#include "relievo/trace.hpp"
+
+namespace relievo {
+
+/// Compiles a composed program for what a backend consumes.
+Result<PreparedProgram> prepare_composed(ComposedProgram composed, std::string_view shader_target);
+
+/// The maps that the roles' techniques and the stage need, in baking order.
+Result<std::vector<std::string>> required_maps(const Registry& registry, std::string_view stage, std::string_view technique);
+
+Buffer make_buffer(std::string name, const void* data, std::size_t size);
+
+/// Adds a buffer to the job and binds it; returns its index.
+int bind_buffer(int set, int binding, Buffer buffer, Job& job, std::vector<ResourceBinding>& resources);
+
+/// Binds the program's maps; a map that the job has already (by name) is shared.
+void bind_maps(const ComposedProgram& composed, const MapSet& maps, Job& job, std::vector<ResourceBinding>& resources);
+
+/// Binds the Parameters block (set 0, binding 0) if the program has one.
+void bind_parameters(const ComposedProgram& composed, Job& job, std::vector<ResourceBinding>& resources);
+
+/// Drops the bindings that the program's contract does not contain: resources of shaders that were optimised away.
+void keep_contract(const ShaderProgram& program, std::vector<ResourceBinding>& resources);
+
+void append_messages(const JobResult& result, std::vector<std::string>* messages);
+
+}  // namespace relievo

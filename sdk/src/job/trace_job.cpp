@@ -1,0 +1,174 @@
+/// The `ray` stage as a Job.
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "job/program.hpp"
+#include "relievo/trace.hpp"
+
+namespace relievo {
+
+namespace {
+
+/// Twins of the structures in shaders/stages/ray/ray.glsl.
+struct PackedRay {
+  float u, v, h, t_max;
+  float du, dv, dh, unused;
+};
+struct PackedHit {
+  std::int32_t status;
+  float t, u, v, h;
+  std::uint32_t steps, fetches, unused;
+};
+static_assert(sizeof(PackedRay) == 32 && sizeof(PackedHit) == 32);
+
+constexpr int batch_binding = 1, rays_binding = 2, hits_binding = 3;
+constexpr std::uint32_t group_size = 64, widest_row = 32768;
+
+/// Whole tiles that a coordinate can shed without changing what it reads (lib/address.glsl has the twin).
+double tile_of(double coordinate, AddressMode address) {
+  if (!std::isfinite(coordinate)) return 0;
+  if (address == AddressMode::repeat) return std::floor(coordinate);
+  if (address == AddressMode::mirror) return 2 * std::floor(coordinate / 2);
+  return 0;
+}
+
+float to_float(double value) {
+  constexpr double limit = std::numeric_limits<float>::max();
+  if (std::isnan(value)) return std::numeric_limits<float>::quiet_NaN();
+  return static_cast<float>(std::fmin(std::fmax(value, -limit), limit));
+}
+
+PackedRay pack(const Ray& ray, AddressMode address) {
+  return {to_float(ray.u - tile_of(ray.u, address)),
+          to_float(ray.v - tile_of(ray.v, address)),
+          to_float(ray.h),
+          to_float(ray.t_max),
+          to_float(ray.du),
+          to_float(ray.dv),
+          to_float(ray.dh),
+          0};
+}
+
+Hit unpack(const PackedHit& packed, const Ray& ray, AddressMode address) {
+  Hit hit;
+  hit.status = static_cast<HitStatus>(packed.status);
+  hit.t = packed.t;
+  hit.u = packed.u + tile_of(ray.u, address);
+  hit.v = packed.v + tile_of(ray.v, address);
+  hit.h = packed.h;
+  hit.steps = packed.steps;
+  hit.fetches = packed.fetches;
+  return hit;
+}
+
+Buffer pack_rays(std::span<const Ray> rays, AddressMode address) {
+  std::vector<PackedRay> packed;
+  packed.reserve(rays.size());
+  for (const Ray& ray : rays) packed.push_back(pack(ray, address));
+  return make_buffer("Rays", packed.data(), packed.size() * sizeof(PackedRay));
+}
+
+std::array<std::uint32_t, 3> groups_for(std::size_t rays) {
+  std::uint32_t groups = static_cast<std::uint32_t>((rays + group_size - 1) / group_size);
+  std::uint32_t row = std::min(groups, widest_row);
+  return {row, (groups + row - 1) / row, 1};
+}
+
+}  // namespace
+
+Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const Ray> rays,
+                           std::span<const TraceRequest> requests, std::string_view shader_target, int repeats) {
+  if (rays.empty()) return fail(ErrorCode::usage, "trace.no-rays", "there are no rays to trace; expected at least one");
+  AddressMode address = maps.at("height").address;
+  Job job;
+  job.name = "trace";
+  std::array<std::uint32_t, 4> count = {static_cast<std::uint32_t>(rays.size()), 0, 0, 0};
+  job.buffers.push_back(make_buffer("Batch", count.data(), sizeof(count)));
+  job.buffers.push_back(pack_rays(rays, address));
+  std::vector<Command> round;
+  for (const TraceRequest& request : requests) {
+    Permutation permutation;
+    permutation.stage = "ray";
+    permutation.roles["view"] = request.technique;
+    permutation.filter = request.filter;
+    permutation.address = address;
+    permutation.count_cost = request.count_cost;
+    permutation.values = request.values;
+    Result<PreparedProgram> prepared = prepare(registry, std::move(permutation), shader_target);
+    if (!prepared) return tl::unexpected(prepared.error());
+    Dispatch dispatch;
+    dispatch.program = static_cast<int>(job.programs.size());
+    dispatch.resources = {{0, batch_binding, 0}, {0, rays_binding, 1}};
+    int hits = bind_buffer(0, hits_binding, {"Hits", rays.size() * sizeof(PackedHit), {}}, job, dispatch.resources);
+    bind_maps(prepared->composed, maps, job, dispatch.resources);
+    bind_parameters(prepared->composed, job, dispatch.resources);
+    keep_contract(prepared->program, dispatch.resources);
+    dispatch.groups = groups_for(rays.size());
+    job.programs.push_back(std::move(prepared->program));
+    job.read_backs.push_back({ReadBack::Source::buffer, hits, 0});
+    round.emplace_back(std::move(dispatch));
+  }
+  for (int i = 0; i < repeats; ++i) job.commands.insert(job.commands.end(), round.begin(), round.end());
+  return job;
+}
+
+std::vector<TraceResult> read_trace(const Job& job, const JobResult& result, std::span<const Ray> rays,
+                                    AddressMode address, std::size_t requests) {
+  std::vector<TraceResult> traces(requests);
+  for (std::size_t k = 0; k < requests; ++k) {
+    const std::vector<std::byte>& bytes = result.read_backs.at(k);
+    traces[k].hits.reserve(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      PackedHit packed;
+      std::memcpy(&packed, bytes.data() + i * sizeof(PackedHit), sizeof(PackedHit));
+      traces[k].hits.push_back(unpack(packed, rays[i], address));
+    }
+    for (std::size_t c = k; c < job.commands.size() && c < result.command_seconds.size(); c += requests) {
+      traces[k].seconds.push_back(result.command_seconds[c]);
+    }
+  }
+  return traces;
+}
+
+Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registry, MapSet& maps, std::span<const Ray> rays,
+                                       std::span<const TraceRequest> requests, int repeats,
+                                       std::vector<std::string>* messages) {
+  for (const TraceRequest& request : requests) {
+    Result<std::vector<std::string>> needed = required_maps(registry, "ray", request.technique);
+    if (!needed) return tl::unexpected(needed.error());
+    for (const std::string& map : *needed) {
+      if (Status status = bake_map(backend, registry, map, maps, request.values, messages); !status) return tl::unexpected(status.error());
+    }
+  }
+  Result<Job> job = make_trace_job(registry, maps, rays, requests, backend.info().shader_target, repeats);
+  if (!job) return tl::unexpected(job.error());
+  Result<JobResult> result = backend.execute(*job);
+  if (!result) return tl::unexpected(result.error());
+  append_messages(*result, messages);
+  return read_trace(*job, *result, rays, maps.at("height").address, requests.size());
+}
+
+std::vector<Ray> make_view_rays(double angle_degrees, double scale, int width, int height) {
+  constexpr double pi = 3.14159265358979323846, field_of_view = 2.0;  // degrees across the image
+  std::vector<Ray> rays;
+  rays.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y) {
+    double row = (y + 0.5) / height, pitch = (angle_degrees + field_of_view * (row - 0.5)) * pi / 180;
+    pitch = std::fmax(pitch, 0.02 * pi / 180);
+    for (int x = 0; x < width; ++x) {
+      double column = (x + 0.5) / width, yaw = (30 + field_of_view * (column - 0.5)) * pi / 180;
+      Ray ray;
+      ray.u = column;
+      ray.v = row;
+      ray.du = std::cos(pitch) * std::cos(yaw);
+      ray.dv = std::cos(pitch) * std::sin(yaw);
+      ray.dh = -std::sin(pitch) / scale;
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
+}  // namespace relievo

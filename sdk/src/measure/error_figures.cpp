@@ -1,0 +1,87 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "relievo/measure.hpp"
+
+namespace relievo {
+namespace {
+
+/// Beyond these two hits are on different layers of the relief (design.md §5).
+constexpr double wrong_layer_texels = 1.0;
+constexpr double wrong_layer_height = 0.02;
+
+bool is_hit(const Hit& hit) {
+  return hit.status == HitStatus::hit || hit.status == HitStatus::inside;
+}
+
+bool is_finite(const Hit& hit) {
+  return std::isfinite(hit.t) && std::isfinite(hit.u) && std::isfinite(hit.v) && std::isfinite(hit.h);
+}
+
+/// Nearest-rank quantile: the smallest value that at least a share q of the values do not exceed. Reorders `values`.
+double quantile(std::vector<double>& values, double q) {
+  if (values.empty()) return 0;
+  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+ErrorQuantiles quantiles(std::vector<double>& values) {
+  return {quantile(values, 0.50), quantile(values, 0.99), quantile(values, 1.0)};
+}
+
+struct Deviations {
+  std::vector<double> uv_texels, height;
+};
+
+void judge(const Hit& reference, const Hit& measured, int width, int height, ErrorFigures& figures,
+           Deviations& deviations) {
+  ++figures.judged;
+  if (!is_finite(measured)) ++figures.non_finite;
+  if (measured.status == HitStatus::exhausted) {
+    ++figures.exhausted;
+  } else if (is_hit(reference) && !is_hit(measured)) {
+    ++figures.missed;
+  } else if (!is_hit(reference) && is_hit(measured)) {
+    ++figures.false_hit;
+  } else if (is_hit(reference)) {
+    const double uv = std::max(std::abs(measured.u - reference.u) * width, std::abs(measured.v - reference.v) * height);
+    const double h = std::abs(measured.h - reference.h);
+    // Written so that a hit at NaN is nowhere near.
+    const bool same_layer = is_finite(measured) && uv <= wrong_layer_texels && h <= wrong_layer_height;
+    if (!same_layer) {
+      ++figures.wrong_layer;
+      return;
+    }
+    deviations.uv_texels.push_back(uv);
+    deviations.height.push_back(h);
+  }
+}
+
+}  // namespace
+
+ErrorFigures compare_hits(std::span<const Hit> reference, std::span<const Hit> measured, int width, int height) {
+  ErrorFigures figures;
+  Deviations deviations;
+  figures.rays = std::min(reference.size(), measured.size());
+  double steps = 0, fetches = 0;
+  for (std::size_t i = 0; i < figures.rays; ++i) {
+    steps += measured[i].steps;
+    fetches += measured[i].fetches;
+    if (reference[i].ambiguous)
+      ++figures.ambiguous;
+    else if (reference[i].status != HitStatus::exhausted)
+      judge(reference[i], measured[i], width, height, figures, deviations);
+  }
+  figures.uv_texels = quantiles(deviations.uv_texels);
+  figures.height = quantiles(deviations.height);
+  if (figures.rays > 0) {
+    figures.mean_steps = steps / static_cast<double>(figures.rays);
+    figures.mean_fetches = fetches / static_cast<double>(figures.rays);
+  }
+  return figures;
+}
+
+}  // namespace relievo

@@ -1,0 +1,71 @@
+// The part of a ray on which a hit is possible: between lid and base, and within the domain of a clip map.
+#include "ray.glsl"
+
+struct Interval {
+  float enter;
+  float exit;
+  int end_status;  // what it means to reach `exit` without a hit: HIT at the base (there H = 0 <= h), MISS, OUTSIDE, EXHAUSTED
+};
+
+// Longest way in texture widths that a search covers when neither lid nor base nor t_max ends the ray.
+const float RELIEVO_MAX_TRAVEL = 1024.0;
+
+// Narrows the interval to the t where one coordinate lies in [0, 1]. No division by zero: a coordinate that does not
+// change is either within for all t or for none.
+void relievo_clip_axis(float origin, float direction, inout Interval interval) {
+  if (direction == 0.0) {
+    if (origin < 0.0 || origin > 1.0) interval = Interval(1.0, 0.0, RELIEVO_OUTSIDE);
+    return;
+  }
+  precise float at_zero = -origin / direction;
+  precise float at_one = (1.0 - origin) / direction;
+  float leave = max(at_zero, at_one);
+  interval.enter = max(interval.enter, min(at_zero, at_one));
+  if (leave < interval.exit) {
+    interval.exit = leave;
+    interval.end_status = RELIEVO_OUTSIDE;
+  }
+}
+
+// Returns false when the ray meets neither; interval.end_status then says why.
+bool relievo_interval(Ray ray, out Interval interval) {
+  interval = Interval(0.0, ray.t_max, RELIEVO_MISS);
+  float height = ray.origin.z;
+  float fall = ray.direction.z;
+  if (height > 1.0) {
+    if (fall >= 0.0) return false;
+    precise float lid = (1.0 - height) / fall;
+    interval.enter = lid;
+  }
+  if (fall < 0.0) {
+    precise float base = max(-height / fall, 0.0);
+    if (base <= interval.exit) {
+      interval.exit = base;
+      interval.end_status = RELIEVO_HIT;
+    }
+  } else if (fall > 0.0) {
+    precise float lid = max((1.0 - height) / fall, 0.0);
+    interval.exit = min(interval.exit, lid);
+  }
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
+  relievo_clip_axis(ray.origin.x, ray.direction.x, interval);
+  relievo_clip_axis(ray.origin.y, ray.direction.y, interval);
+#endif
+  float speed = max(abs(ray.direction.x), abs(ray.direction.y));
+  if ((interval.exit - interval.enter) * speed > RELIEVO_MAX_TRAVEL) {
+    interval.exit = interval.enter + RELIEVO_MAX_TRAVEL / speed;
+    interval.end_status = RELIEVO_EXHAUSTED;
+  } else if (interval.exit == RELIEVO_NO_LIMIT) {
+    interval.exit = interval.enter;  // at rest above one point for ever: the entry decides
+  }
+  return interval.enter <= interval.exit;
+}
+
+// The point at t, with H exact where the interval meets the lid: a plateau at 1 is then touched, not missed by rounding.
+vec3 relievo_entry_point(Ray ray, Interval interval) {
+  vec3 point = relievo_point(ray, interval.enter);
+  if (ray.origin.z > 1.0) point.z = min(point.z, 1.0);
+  return point;
+}
+
+Hit relievo_end_of(Ray ray, Interval interval) { return relievo_hit_at(ray, interval.end_status, interval.exit); }

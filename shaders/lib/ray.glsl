@@ -1,0 +1,62 @@
+// Rays and hits in normalized tangent space (u, v, H): H = 0 is the base, H = 1 the lid.
+// The C++ twins are relievo::Ray, relievo::Hit and relievo::HitStatus (oracle.hpp); a test compares the values.
+
+const int RELIEVO_MISS = 0;       // left the slab or reached t_max
+const int RELIEVO_HIT = 1;        // H(t) <= h(u(t), v(t)) first holds at t
+const int RELIEVO_EXHAUSTED = 2;  // the step budget ran out
+const int RELIEVO_INSIDE = 3;     // starts below the surface; t = 0
+const int RELIEVO_OUTSIDE = 4;    // left the domain of a clip map
+
+const float RELIEVO_NO_LIMIT = 3.402823466e+38;  // t_max of a ray without one
+
+struct Ray {
+  vec3 origin;     // (u, v, H) at t = 0
+  vec3 direction;  // (du, dv, dH)
+  float t_max;
+  float n_dot_v;   // |cosine| of the angle between the ray and the base normal, in world space
+};
+
+// Which part of the mesh the current ray belongs to: the tetrahedron of a prism, 3 · triangle + index, or 0.
+int relievo_cell = 0;
+
+struct Hit {
+  int status;
+  float t;
+  vec3 point;  // (u, v, H) at t
+};
+
+// Cost of the current invocation: loop iterations and texel reads. Counted by instrumented permutations only.
+#if RELIEVO_COUNT
+uint relievo_steps = 0u;
+uint relievo_fetches = 0u;
+#define RELIEVO_COUNT_STEP() (relievo_steps += 1u)
+#define RELIEVO_COUNT_FETCHES(n) (relievo_fetches += uint(n))
+#else
+#define RELIEVO_COUNT_STEP()
+#define RELIEVO_COUNT_FETCHES(n)
+#endif
+
+// `precise` here and below: what decides between hit and miss must not be contracted or reordered by one compiler and
+// not by another.
+vec3 relievo_point(Ray ray, float t) {
+  precise vec3 point = ray.origin + t * ray.direction;
+  return point;
+}
+
+Hit relievo_hit_at(Ray ray, int status, float t) { return Hit(status, t, relievo_point(ray, t)); }
+
+// Exponent bits all set: NaN or infinity. A bit test survives compilers that assume neither occurs.
+bool relievo_is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
+bool relievo_is_finite(vec3 x) { return relievo_is_finite(x.x) && relievo_is_finite(x.y) && relievo_is_finite(x.z); }
+
+bool relievo_is_valid(Ray ray) {
+  return relievo_is_finite(ray.origin) && relievo_is_finite(ray.direction) && relievo_is_finite(ray.t_max) &&
+         ray.direction != vec3(0.0) && ray.t_max >= 0.0;
+}
+
+// Nothing that is not finite leaves a stage: such a result becomes a miss at the ray's origin.
+Hit relievo_sanitized(Ray ray, Hit hit) {
+  if (relievo_is_finite(hit.t) && relievo_is_finite(hit.point)) return hit;
+  vec3 origin = relievo_is_finite(ray.origin) ? ray.origin : vec3(0.0);
+  return Hit(RELIEVO_MISS, 0.0, origin);
+}

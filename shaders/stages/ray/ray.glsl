@@ -1,0 +1,44 @@
+// Traces a buffer of rays. The twins in C++ are PackedRay and PackedHit (job/trace_job.cpp).
+#include "shaders/lib/ray.glsl"
+
+layout(local_size_x = 64) in;
+
+struct PackedRay {
+  vec4 origin_limit;  // u, v, H, t_max
+  vec4 direction;     // du, dv, dH, unused
+};
+
+struct PackedHit {
+  int status;
+  float t, u, v, h;
+  uint steps, fetches, unused;
+};
+
+layout(std140, set = 0, binding = 1) uniform Batch {
+  uvec4 ray_count;  // x
+};
+layout(std430, set = 0, binding = 2) readonly buffer Rays { PackedRay rays[]; };
+layout(std430, set = 0, binding = 3) writeonly buffer Hits { PackedHit hits[]; };
+
+float ray_n_dot_v(vec3 direction) {
+  float rise = abs(direction.z) * ray_scale;
+  float longest = max(max(abs(direction.x), abs(direction.y)), rise);
+  if (!(longest > 0.0)) return 1.0;
+  return rise / longest / length(vec3(direction.xy, rise) / longest);
+}
+
+void main() {
+  uint index = gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * gl_WorkGroupSize.x) + gl_GlobalInvocationID.x;
+  if (index >= ray_count.x) return;
+  vec4 origin_limit = rays[index].origin_limit;
+  vec3 direction = rays[index].direction.xyz;
+  Ray ray = Ray(origin_limit.xyz, direction, origin_limit.w, ray_n_dot_v(direction));
+  Hit hit = Hit(RELIEVO_MISS, 0.0, ray.origin);
+  if (relievo_is_valid(ray)) hit = relievo_view_trace(ray);
+  hit = relievo_sanitized(ray, hit);
+#if RELIEVO_COUNT
+  hits[index] = PackedHit(hit.status, hit.t, hit.point.x, hit.point.y, hit.point.z, relievo_steps, relievo_fetches, 0u);
+#else
+  hits[index] = PackedHit(hit.status, hit.t, hit.point.x, hit.point.y, hit.point.z, 0u, 0u, 0u);
+#endif
+}

@@ -1,0 +1,8 @@
+// Bump mapping (survey §4.1.1): the visible point is the processed point (u, v, 0), whatever the height map says.
+#include "shaders/lib/interval.glsl"
+
+Hit bump_trace(Ray ray) {
+  Interval interval;
+  if (!relievo_interval(ray, interval)) return relievo_hit_at(ray, RELIEVO_MISS, 0.0);
+  return relievo_end_of(ray, interval);
+}

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Installs a built tree (default build/release) into a fresh prefix, moves the prefix, and builds and runs a consumer
+# against it twice: found by CMake, and found by pkg-config.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+root=$(cd "$here/../.." && pwd)
+build=$(cd "${1:-$root/build/release}" && pwd)
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() { echo "install test: $*" >&2; exit 1; }
+
+cmake --install "$build" --prefix "$work/first" >/dev/null
+mv "$work/first" "$work/prefix"
+prefix=$work/prefix
+libdir=$(dirname "$(find "$prefix" -name librelievo.so)")
+[ -n "$libdir" ] || fail "the library is not installed"
+
+# A path of the build machine in an installed file breaks the package elsewhere.
+for path in "$root" "$build" "$work/first"; do
+  leak=$(grep -rlF --include='*.cmake' --include='*.pc' --include='*.hpp' -- "$path" "$prefix" || true)
+  [ -z "$leak" ] || fail "$path is named in $leak"
+done
+for header in "$root"/sdk/include/relievo/*.hpp; do
+  [ -f "$prefix/include/relievo/$(basename "$header")" ] || fail "$(basename "$header") is not installed"
+done
+
+echo "found by CMake:"
+cmake -S "$here" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
+cmake --build "$work/cmake" >/dev/null || cmake --build "$work/cmake"
+"$work/cmake/consumer"
+
+echo "found by pkg-config:"
+export PKG_CONFIG_PATH=$libdir/pkgconfig
+read -ra flags <<<"$(pkg-config --cflags --libs relievo)"
+"${CXX:-c++}" -std=c++20 "$here/consumer.cpp" "${flags[@]}" -Wl,-rpath,"$libdir" -o "$work/consumer"
+"$work/consumer"
+
+if [ -x "$prefix/bin/relievo" ]; then
+  echo "the installed program:"
+  "$prefix/bin/relievo" list >/dev/null || fail "the installed program does not list its techniques"
+  echo "lists its techniques"
+fi

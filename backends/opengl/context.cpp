@@ -17,17 +17,17 @@ tl::unexpected<Error> unavailable(std::string reason) {
 }
 
 /// A context without a config where the driver can, otherwise with any config for OpenGL.
-EGLConfig any_config(const Display& display) {
-  if (display.has_extension("EGL_KHR_no_config_context")) return EGL_NO_CONFIG_KHR;
+EGLConfig any_config(EGLDisplay display) {
+  if (has_extension(display, "EGL_KHR_no_config_context")) return EGL_NO_CONFIG_KHR;
   const std::array<EGLint, 5> wanted = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_PBUFFER_BIT,
                                         EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
-  eglChooseConfig(display.handle(), wanted.data(), &config, 1, &count);
+  eglChooseConfig(display, wanted.data(), &config, 1, &count);
   return config;
 }
 
-EGLContext create_context(const Display& display, EGLBoolean debug, EGLBoolean robust) {
+EGLContext create_context(EGLDisplay display, EGLBoolean debug, EGLBoolean robust) {
   const std::vector<EGLint> attributes = {
       EGL_CONTEXT_MAJOR_VERSION,
       4,
@@ -41,7 +41,7 @@ EGLContext create_context(const Display& display, EGLBoolean debug, EGLBoolean r
       static_cast<EGLint>(robust),
       EGL_NONE,
   };
-  return eglCreateContext(display.handle(), any_config(display), EGL_NO_CONTEXT, attributes.data());
+  return eglCreateContext(display, any_config(display), EGL_NO_CONTEXT, attributes.data());
 }
 
 }  // namespace
@@ -81,10 +81,9 @@ Result<std::unique_ptr<Context>> Context::open(const BackendOptions& options) {
 }
 
 Result<std::unique_ptr<Context>> Context::create(const DisplayCandidate& candidate, bool debug) {
-  auto display = Display::open(candidate.handle, candidate.label);
-  if (!display) return tl::unexpected(std::move(display.error()));
+  if (auto status = initialise(candidate); !status) return tl::unexpected(std::move(status.error()));
   std::unique_ptr<Context> context(new Context);
-  context->display_ = std::move(*display);
+  context->display_ = candidate.handle;
   context->debug_ = debug;
   if (auto status = context->create_handle(candidate); !status) return tl::unexpected(std::move(status.error()));
   if (auto status = context->read_identity(candidate); !status) return tl::unexpected(std::move(status.error()));
@@ -92,14 +91,14 @@ Result<std::unique_ptr<Context>> Context::create(const DisplayCandidate& candida
 }
 
 Status Context::create_handle(const DisplayCandidate& candidate) {
-  if (!display_->has_extension("EGL_KHR_surfaceless_context")) {
+  if (!has_extension(display_, "EGL_KHR_surfaceless_context")) {
     return unavailable(fmt::format("on the {} display, EGL_KHR_surfaceless_context is missing", candidate.label));
   }
   const EGLenum previous_api = eglQueryAPI();
   eglBindAPI(EGL_OPENGL_API);
   // With bounds checks where the driver has them: a job's shaders and indices may reach outside of its buffers.
-  handle_ = create_context(*display_, debug_, EGL_TRUE);
-  if (handle_ == EGL_NO_CONTEXT) handle_ = create_context(*display_, debug_, EGL_FALSE);
+  handle_ = create_context(display_, debug_, EGL_TRUE);
+  if (handle_ == EGL_NO_CONTEXT) handle_ = create_context(display_, debug_, EGL_FALSE);
   const EGLint error = eglGetError();
   eglBindAPI(previous_api);
   if (handle_ != EGL_NO_CONTEXT) return {};
@@ -119,7 +118,7 @@ Status Context::read_identity(const DisplayCandidate& candidate) {
 }
 
 Context::~Context() {
-  if (handle_ != EGL_NO_CONTEXT) eglDestroyContext(display_->handle(), handle_);
+  if (handle_ != EGL_NO_CONTEXT) eglDestroyContext(display_, handle_);
 }
 
 bool Context::is_software() const {
@@ -130,7 +129,7 @@ bool Context::is_software() const {
 }
 
 CurrentContext::CurrentContext(const Context& context)
-    : display_(context.display_->handle()),
+    : display_(context.display_),
       previous_api_(eglQueryAPI()),
       previous_display_(eglGetCurrentDisplay()),
       previous_draw_(eglGetCurrentSurface(EGL_DRAW)),

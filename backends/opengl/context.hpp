@@ -37,7 +37,7 @@ class Context {
   Status read_identity(const DisplayCandidate& candidate);
 
   DebugOutput debug_output_;  // outlives the context, which speaks to it while it is destroyed
-  std::unique_ptr<Display> display_;
+  EGLDisplay display_ = EGL_NO_DISPLAY;
   EGLContext handle_ = EGL_NO_CONTEXT;
   bool debug_ = false;
   std::string device_;

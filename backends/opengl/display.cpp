@@ -4,18 +4,9 @@
 
 #include <array>
 #include <map>
-#include <mutex>
 
 namespace relievo::opengl {
 namespace {
-
-struct DisplayUse {
-  int count = 0;
-  bool ours = false;  ///< we initialised it, so we terminate it
-};
-
-std::mutex use_mutex;
-std::map<EGLDisplay, DisplayUse> uses;  // guarded by use_mutex
 
 // eglGetProcAddress instead of libepoxy's wrappers: those end the program when the entry point is missing.
 template <class Function>
@@ -23,19 +14,15 @@ Function egl_function(const char* name) {
   return reinterpret_cast<Function>(eglGetProcAddress(name));
 }
 
-bool has_client_extension(const char* name) {
-  return epoxy_has_egl_extension(EGL_NO_DISPLAY, name);
-}
-
 void add_surfaceless(PFNEGLGETPLATFORMDISPLAYEXTPROC get_display, std::vector<DisplayCandidate>& candidates) {
-  if (!has_client_extension("EGL_MESA_platform_surfaceless")) return;
+  if (!has_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")) return;
   const EGLDisplay handle = get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (handle != EGL_NO_DISPLAY) candidates.push_back({handle, "surfaceless"});
 }
 
 void add_devices(PFNEGLGETPLATFORMDISPLAYEXTPROC get_display, std::vector<DisplayCandidate>& candidates) {
   const auto query_devices = egl_function<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
-  if (!has_client_extension("EGL_EXT_platform_device") || query_devices == nullptr) return;
+  if (!has_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") || query_devices == nullptr) return;
   std::array<EGLDeviceEXT, 16> devices{};
   EGLint count = 0;
   if (!query_devices(static_cast<EGLint>(devices.size()), devices.data(), &count)) return;
@@ -47,32 +34,6 @@ void add_devices(PFNEGLGETPLATFORMDISPLAYEXTPROC get_display, std::vector<Displa
 
 }  // namespace
 
-Result<std::unique_ptr<Display>> Display::open(EGLDisplay handle, const std::string& label) {
-  const std::lock_guard lock(use_mutex);
-  DisplayUse& use = uses[handle];
-  if (use.count == 0) {
-    use.ours = eglQueryString(handle, EGL_VERSION) == nullptr;
-    if (!eglInitialize(handle, nullptr, nullptr)) {
-      return fail(ErrorCode::unsupported, "backend.unavailable",
-                  fmt::format("on the {} display, eglInitialize gives {}", label, egl_error_name(eglGetError())));
-    }
-  }
-  ++use.count;
-  return std::unique_ptr<Display>(new Display(handle));
-}
-
-Display::~Display() {
-  const std::lock_guard lock(use_mutex);
-  const auto it = uses.find(handle_);
-  if (--it->second.count > 0) return;
-  if (it->second.ours) eglTerminate(handle_);
-  uses.erase(it);
-}
-
-bool Display::has_extension(const char* name) const {
-  return epoxy_has_egl_extension(handle_, name);
-}
-
 std::vector<DisplayCandidate> display_candidates() {
   std::vector<DisplayCandidate> candidates;
   const auto get_display = egl_function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
@@ -80,6 +41,16 @@ std::vector<DisplayCandidate> display_candidates() {
   add_surfaceless(get_display, candidates);
   add_devices(get_display, candidates);
   return candidates;
+}
+
+Status initialise(const DisplayCandidate& candidate) {
+  if (eglInitialize(candidate.handle, nullptr, nullptr)) return {};
+  return fail(ErrorCode::unsupported, "backend.unavailable",
+              fmt::format("on the {} display, eglInitialize gives {}", candidate.label, egl_error_name(eglGetError())));
+}
+
+bool has_extension(EGLDisplay display, const char* name) {
+  return epoxy_has_egl_extension(display, name);
 }
 
 std::string egl_error_name(EGLint error) {

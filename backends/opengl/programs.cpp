@@ -7,6 +7,7 @@
 
 #include "program_interface.hpp"
 #include "specialization.hpp"
+#include "vertex_order.hpp"
 
 namespace relievo::opengl {
 namespace {
@@ -47,7 +48,8 @@ Result<ShaderHandle> compile_shader(const ShaderProgram& program, const ShaderCo
                 fmt::format("the {} shader of program '{}' has no text for glsl-450, which the opengl backend runs",
                             to_string(code.stage), program.name));
   }
-  const std::string source = specialize(text->second, program.constants);
+  std::string source = specialize(text->second, program.constants);
+  if (code.stage == ShaderStage::tessellation_evaluation) source = exchange_vertex_order(source);
   ShaderHandle shader(glCreateShader(shader_type(code.stage)));
   const GLchar* pointer = source.data();
   const auto length = static_cast<GLint>(source.size());

@@ -170,7 +170,8 @@ bool has_validation_layer() {
   return layer_is_installed();
 }
 
-Instance::Instance(Messages* messages) {
+// Delegates, so that the destructor cleans up when a later step throws.
+Instance::Instance(Messages* messages) : Instance() {
   const auto lock = lock_loader();
   open_loader();
   if (messages && !layer_is_installed()) {
@@ -183,6 +184,7 @@ Instance::Instance(Messages* messages) {
 }
 
 Instance::~Instance() {
+  if (!instance_) return;
   const auto lock = lock_loader();
   volkLoadInstanceOnly(instance_);
   if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);

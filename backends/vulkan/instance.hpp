@@ -34,6 +34,8 @@ class Instance {
   VkInstance handle() const { return instance_; }
 
  private:
+  Instance() = default;
+
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
 };

@@ -17,7 +17,7 @@ Result<Registry> Context::registry() const {
 
 void Context::report(const Error& error) {
   exit_code = relievo::exit_code(error.code);
-  if (!json) {
+  if (!json || error.code == ErrorCode::mismatch) {  // a mismatch comes with its own JSON
     fmt::print(stderr, "{}\n", format(error));
     return;
   }

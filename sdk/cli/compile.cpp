@@ -14,7 +14,7 @@ struct CompileOptions {
   std::vector<std::string> techniques, targets, set, defines, bindings;
   std::string stage = "surface", address = "repeat", filter = "exact", aov = "color", output = "-", depfile;
   bool count = false, depend = false, keep_unoptimized = false;
-  int jobs = 1;
+  unsigned jobs = 0;
 };
 
 constexpr std::string_view stage_suffix(ShaderStage stage) {
@@ -39,10 +39,24 @@ Result<std::map<std::string, BindingTime>> parse_bindings(const CompileOptions& 
   return times;
 }
 
+/// `all` means every target that can do it; what is left out is said.
+std::vector<Target> allowed_targets(const ComposedProgram& program, std::string_view fallback) {
+  std::vector<Target> allowed;
+  for (const Target& target : all_targets()) {
+    Status status = check_capabilities(target, program, fallback);
+    if (status) {
+      allowed.push_back(target);
+    } else {
+      fmt::print(stderr, "note: {} left out: {} [{}]\n", to_string(target), status.error().message, status.error().id);
+    }
+  }
+  return allowed;
+}
+
 Result<std::vector<Target>> parse_targets(const std::vector<std::string>& names) {
   std::vector<Target> targets;
   for (const std::string& name : names) {
-    if (name == "all") return std::vector<Target>(all_targets().begin(), all_targets().end());
+    if (name == "all") continue;
     Result<Target> target = parse_target(name);
     if (!target) return tl::unexpected(target.error());
     targets.push_back(*target);
@@ -98,14 +112,16 @@ Status write_depfile(const ComposedProgram& program, const std::string& base, co
   return write_text(path, text + "\n");
 }
 
-Status compile_one(const Registry& registry, const CompileOptions& options, const std::vector<Target>& targets, const std::string& technique) {
+Status compile_one(const Registry& registry, const CompileOptions& options, std::vector<Target> targets, const std::string& technique) {
   Result<Permutation> permutation = permutation_of(registry, options, technique);
   if (!permutation) return tl::unexpected(permutation.error());
   Result<ComposedProgram> composed = compose(registry, *permutation);
   if (!composed) return tl::unexpected(composed.error());
   Result<const StageDescriptor*> stage = registry.stage(options.stage);
+  if (std::find(options.targets.begin(), options.targets.end(), "all") != options.targets.end()) targets = allowed_targets(*composed, (*stage)->fallback);
   relievo::CompileOptions compile_options;
   compile_options.optimize = !options.keep_unoptimized;
+  compile_options.threads = options.jobs;
   Result<CompiledProgram> compiled = compile(*composed, targets, compile_options, (*stage)->fallback);
   if (!compiled) return tl::unexpected(compiled.error());
   std::string base = technique.empty() ? options.stage : technique + "." + options.stage;
@@ -152,7 +168,7 @@ void add_compile(CLI::App& app, Context& context) {
   command->add_option("--set", options->set, "parameter=value");
   command->add_option("-D", options->defines, "parameter=value, as a macro");
   command->add_option("--bind", options->bindings, "owner.parameter=macro|specialization|uniform");
-  command->add_option("-j", options->jobs, "Threads; the outputs do not depend on it")->check(CLI::Range(1, 1024));
+  command->add_option("-j", options->jobs, "Threads; 0 = all. The outputs do not depend on it")->check(CLI::Range(0, 1024))->capture_default_str();
   command->add_flag("--count", options->count, "Count steps and fetches");
   command->add_flag("--O0", options->keep_unoptimized, "Do not optimise");
   command->add_flag("--MD", options->depend, "Write a depfile");

@@ -55,6 +55,7 @@ void print(const nlohmann::json& lists) {
       std::string text = entry.value("title", "");
       if (entry.contains("class")) text += fmt::format(" ({}; first hit: {})", entry["class"].get<std::string>(), entry["first_hit"].get<std::string>());
       if (entry.contains("device")) text += fmt::format(": {}", entry["device"].get<std::string>());
+      if (entry.contains("features")) text += fmt::format(" ({})", fmt::join(entry["features"].get<std::vector<std::string>>(), ", "));
       if (entry.contains("reason")) text += fmt::format(": not available: {}", entry["reason"].get<std::string>());
       fmt::print("  {:<20} {}\n", entry["name"].get<std::string>(), text);
     }

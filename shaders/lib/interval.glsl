@@ -17,8 +17,8 @@ void relievo_clip_axis(float origin, float direction, inout Interval interval) {
     if (origin < 0.0 || origin > 1.0) interval = Interval(1.0, 0.0, RELIEVO_OUTSIDE);
     return;
   }
-  float at_zero = -origin / direction;
-  float at_one = (1.0 - origin) / direction;
+  precise float at_zero = -origin / direction;
+  precise float at_one = (1.0 - origin) / direction;
   float leave = max(at_zero, at_one);
   interval.enter = max(interval.enter, min(at_zero, at_one));
   if (leave < interval.exit) {
@@ -34,16 +34,18 @@ bool relievo_interval(Ray ray, out Interval interval) {
   float fall = ray.direction.z;
   if (height > 1.0) {
     if (fall >= 0.0) return false;
-    interval.enter = (1.0 - height) / fall;
+    precise float lid = (1.0 - height) / fall;
+    interval.enter = lid;
   }
   if (fall < 0.0) {
-    float base = max(-height / fall, 0.0);
+    precise float base = max(-height / fall, 0.0);
     if (base <= interval.exit) {
       interval.exit = base;
       interval.end_status = RELIEVO_HIT;
     }
   } else if (fall > 0.0) {
-    interval.exit = min(interval.exit, max((1.0 - height) / fall, 0.0));
+    precise float lid = max((1.0 - height) / fall, 0.0);
+    interval.exit = min(interval.exit, lid);
   }
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
   relievo_clip_axis(ray.origin.x, ray.direction.x, interval);

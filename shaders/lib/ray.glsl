@@ -16,6 +16,9 @@ struct Ray {
   float n_dot_v;   // |cosine| of the angle between the ray and the base normal, in world space
 };
 
+// Which part of the mesh the current ray belongs to: the tetrahedron of a prism, 3 · triangle + index, or 0.
+int relievo_cell = 0;
+
 struct Hit {
   int status;
   float t;
@@ -33,7 +36,12 @@ uint relievo_fetches = 0u;
 #define RELIEVO_COUNT_FETCHES(n)
 #endif
 
-vec3 relievo_point(Ray ray, float t) { return ray.origin + t * ray.direction; }
+// `precise` here and below: what decides between hit and miss must not be contracted or reordered by one compiler and
+// not by another.
+vec3 relievo_point(Ray ray, float t) {
+  precise vec3 point = ray.origin + t * ray.direction;
+  return point;
+}
 
 Hit relievo_hit_at(Ray ray, int status, float t) { return Hit(status, t, relievo_point(ray, t)); }
 

@@ -8,6 +8,6 @@ Hit parallax_trace(Ray ray) {
   if (interval.end_status != RELIEVO_HIT) return relievo_end_of(ray, interval);
   RELIEVO_COUNT_STEP();
   float height = relievo_height_at(relievo_point(ray, interval.exit).xy);
-  float t = (height - ray.origin.z) / ray.direction.z;  // falls, for it reaches the base
+  precise float t = (height - ray.origin.z) / ray.direction.z;  // falls, for it reaches the base
   return relievo_hit_at(ray, RELIEVO_HIT, clamp(t, interval.enter, interval.exit));
 }

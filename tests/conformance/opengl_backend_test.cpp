@@ -105,7 +105,7 @@ TEST(OpenGlBackend, SelectsTheDeviceByPartOfItsName) {
 TEST(OpenGlBackend, ComputeReadsAndWritesBuffersByName) {
   const JobResult result = run(square_job(1000));
   ASSERT_THAT(result.read_backs, SizeIs(1));
-  const auto values = from_bytes<float>(result.read_backs[0]);
+  const auto values = from_bytes<float>(result.read_backs.at(0));
   ASSERT_THAT(values, SizeIs(1000));
   for (int i = 0; i < 1000; ++i) {
     const float x = 0.25f * static_cast<float>(i);
@@ -118,7 +118,7 @@ TEST(OpenGlBackend, BuffersWithoutDataAreZeroAndHaveTheirExactLength) {
       run(compute_job("layout(local_size_x = 1) in; layout(std430, binding = 0) buffer Out { uint v[]; };\n"
                       "void main() { v[1] = v.length() + v[0] + v[2]; }",
                       12));
-  EXPECT_THAT(from_bytes<std::uint32_t>(result.read_backs[0]), ElementsAre(0, 3, 0));
+  EXPECT_THAT(from_bytes<std::uint32_t>(result.read_backs.at(0)), ElementsAre(0, 3, 0));
 }
 
 TEST(OpenGlBackend, EachCommandSeesWhatEarlierOnesWrote) {
@@ -128,7 +128,7 @@ TEST(OpenGlBackend, EachCommandSeesWhatEarlierOnesWrote) {
       4);
   job.commands.resize(5, job.commands[0]);
   const JobResult result = run(job);
-  EXPECT_THAT(from_bytes<std::uint32_t>(result.read_backs[0]), ElementsAre(121));
+  EXPECT_THAT(from_bytes<std::uint32_t>(result.read_backs.at(0)), ElementsAre(121));
   EXPECT_THAT(result.command_seconds, SizeIs(5));
 }
 
@@ -171,7 +171,7 @@ Job constants_job(std::vector<SpecializationValue> constants) {
 
 TEST(OpenGlBackend, SpecializationConstantsKeepTheirDefaults) {
   const JobResult result = run(constants_job({}));
-  EXPECT_THAT(from_bytes<std::uint32_t>(result.read_backs[0]),
+  EXPECT_THAT(from_bytes<std::uint32_t>(result.read_backs.at(0)),
               ElementsAre(7, std::bit_cast<std::uint32_t>(0.5f), 1, 2));
 }
 
@@ -180,7 +180,7 @@ TEST(OpenGlBackend, SpecializationConstantsTakeTheProgramsBits) {
   for (const float value : {0.1f, -3.0f, 1e-30f, 16777217.0f, 3.40282347e38f}) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
     const JobResult result = run(constants_job({{1, 0x80000000u}, {11, bits}, {2, 0}, {3, 5}, {99, 4}}));
-    EXPECT_THAT(from_bytes<std::uint32_t>(result.read_backs[0]), ElementsAre(0x80000000u, bits, 0, 5)) << value;
+    EXPECT_THAT(from_bytes<std::uint32_t>(result.read_backs.at(0)), ElementsAre(0x80000000u, bits, 0, 5)) << value;
   }
 }
 

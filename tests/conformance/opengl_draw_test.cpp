@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "backends/opengl/vertex_order.hpp"
 #include "opengl_jobs.hpp"
 
 namespace relievo {
@@ -289,9 +290,18 @@ Job tessellated_job(const std::string& order, const std::vector<Vertex>& vertice
   return job;
 }
 
-TEST(OpenGlDraw, TessellationCoversThePatch) {
-  const auto texels = image(run(tessellated_job("ccw", covering())));
-  EXPECT_THAT(texels, Each(testing::AnyOf(1.0f, 2.0f)));
+TEST(OpenGlDraw, TessellatedTrianglesWindAsInVulkan) {
+  // The domain's origin is at the upper left, so `cw` keeps the winding of the patch and `ccw` turns it.
+  EXPECT_THAT(image(run(tessellated_job("cw", covering()))), Each(1.0f));
+  EXPECT_THAT(image(run(tessellated_job("ccw", covering()))), Each(2.0f));
+  EXPECT_THAT(image(run(tessellated_job("ccw", reversed(covering())))), Each(1.0f));
+}
+
+TEST(OpenGlVertexOrder, IsExchangedInInputLayoutsAlone) {
+  EXPECT_EQ(opengl::exchange_vertex_order("layout(triangles, ccw, equal_spacing) in;\nfloat ccw;"),
+            "layout(triangles, cw, equal_spacing) in;\nfloat ccw;");
+  EXPECT_EQ(opengl::exchange_vertex_order("layout(cw) in; layout(location = 0) in vec3 accw;"),
+            "layout(ccw) in; layout(location = 0) in vec3 accw;");
 }
 
 }  // namespace

@@ -153,7 +153,7 @@ std::vector<float> sample(const Texture& texture, const std::string& expression,
   sample_texture(job, "map", texture);
   std::get<Dispatch>(job.commands[0]).groups[0] = static_cast<std::uint32_t>(count);
   const JobResult result = run(job);
-  return result.read_backs.empty() ? std::vector<float>{} : from_bytes<float>(result.read_backs[0]);
+  return result.read_backs.empty() ? std::vector<float>{} : from_bytes<float>(result.read_backs.at(0));
 }
 
 /// A float texture whose texels count from 0, in memory order.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "compile/complexity.hpp"
 #include "relievo/compile.hpp"
 #include "support/sample_programs.hpp"
 
@@ -82,6 +83,29 @@ TEST(CompileDiagnostics, TextsThatAreNotGlslAreErrorsNotCrashes) {
                                  "#extension GL_none : require\nvoid main(){}", "/*"}) {
     EXPECT_EQ(error_of(testing::make_program({{ShaderStage::fragment, text, {}}})).id, "compile.glsl") << text;
   }
+}
+
+std::string chain(const std::string& first, const std::string& link, int length) {
+  std::string text = first;
+  for (int i = 0; i < length; ++i) text += link;
+  return text;
+}
+
+TEST(CompileDiagnostics, ARunawayExpressionIsAnErrorNotAStackOverflow) {
+  for (const std::string& expression : {chain("a", "+a", 100000), chain("a", "+f(a,a)", 100000),
+                                        chain("(a", ",a", 100000) + ")", chain("vec4(a)", ".xyzw", 100000) + ".x"}) {
+    const Error error = error_of(compute_program(
+        "float f(float x, float y) { return x; }\nvoid main() { float a = 1.0; a = " + expression + "; }"));
+    EXPECT_EQ(error.id, "compile.glsl");
+    EXPECT_NE(error.message.find("chains more than 4000 operators"), std::string::npos) << error.message.substr(0, 200);
+  }
+}
+
+TEST(CompileDiagnostics, LongTablesCommentsAndCodeAreNotRunaway) {
+  EXPECT_FALSE(has_runaway_expression(chain("const float t[] = float[](0.0", ", -0.5 + 0.25", 20000) + ");"));
+  EXPECT_FALSE(has_runaway_expression(chain("// ", "-", 20000) + "\nvoid main() {}"));
+  EXPECT_FALSE(has_runaway_expression(chain("/* ", "=", 20000) + "*/ void main() {}"));
+  EXPECT_FALSE(has_runaway_expression(chain("void main() {", "a = a + b * c.x;\n", 20000) + "}"));
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ struct PictureRow {
   std::uint64_t degenerate_triangles = 0;
 };
 
-/// Pictures compared: two backends, or one and its reference ("oracle", or the finely displaced mesh "vertex").
+/// Pictures compared: two backends, or one backend's and the oracle's, or the prisms' and the finely displaced mesh's ("vertex").
 struct PictureAgreement {
   std::string scene, stage, technique, left, right;
   ImageDifference difference;

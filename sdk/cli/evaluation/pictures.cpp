@@ -76,19 +76,22 @@ Status compare_with(SceneRun& run, const Reference& reference, const std::string
   return write_picture(run, file, amplify_difference(pixels, reference.pixels));
 }
 
-/// `surface` is held against the oracle's replay; other tracing stages against the finely displaced mesh.
+/// Whether the oracle has a picture of the stage.
+bool is_replayed(const StageDescriptor& stage) { return stage.mesh == "base" || stage.mesh == "prisms"; }
+
+/// The oracle's picture of the stage; of a tessellated mesh, the oracle's picture of the prisms, which describe the same surface.
 Result<std::optional<Reference>> reference_for(SceneRun& run, const StageDescriptor& stage) {
-  if (stage.roles.empty()) return std::nullopt;
-  bool replayed = stage.name == "surface";
-  Result<RenderResult> result = replayed ? draw(run, stage.name, "oracle") : draw(run, "vertex", "");
+  std::string drawn_by = is_replayed(stage) ? stage.name : "prism";
+  if (!run.input.registry->stages.contains(drawn_by) || !run.backend.info().features.contains("geometry")) return std::nullopt;
+  Result<RenderResult> result = draw(run, drawn_by, "oracle");
   if (!result) return tl::unexpected(result.error());
-  std::string name = replayed ? "oracle" : "vertex";
-  if (replayed) {
-    PictureRow row{run.scene_name, stage.name, "oracle", run.backend.info().name, run.input.pictures.empty() ? "" : file_name(run, stage.name, "oracle"), "", result->seconds, true, 0};
+  if (is_replayed(stage)) {
+    PictureRow row{run.scene_name, stage.name, "oracle", run.backend.info().name, "", "", result->seconds, true, 0};
+    if (!run.input.pictures.empty()) row.file = file_name(run, stage.name, "oracle");
     run.evaluation.pictures.push_back(std::move(row));
     if (Status status = write_picture(run, file_name(run, stage.name, "oracle"), result->color); !status) return tl::unexpected(status.error());
   }
-  return Reference{name, std::move(result->color)};
+  return Reference{"oracle", std::move(result->color)};
 }
 
 using PicturesByCase = std::map<std::pair<std::string, std::string>, Pixels>;  // stage, technique
@@ -112,6 +115,16 @@ Status run_stage(SceneRun& run, const StageDescriptor& stage, PicturesByCase& pi
     pictures[{stage.name, technique}] = std::move(*pixels);
   }
   return {};
+}
+
+/// Silhouettes: every picture of the prisms against the finely displaced mesh.
+void compare_silhouettes(const std::string& scene, const std::string& backend, const PicturesByCase& pictures, Evaluation& evaluation) {
+  auto displaced = pictures.find({"vertex", ""});
+  if (displaced == pictures.end()) return;
+  for (const auto& [key, pixels] : pictures) {
+    if (key.first != "prism") continue;
+    evaluation.picture_agreements.push_back({scene, key.first, key.second, backend, "vertex", compare_images(pixels, displaced->second)});
+  }
 }
 
 void compare_backends(const std::string& scene, const std::map<std::string, PicturesByCase>& by_backend, Evaluation& evaluation) {
@@ -138,6 +151,7 @@ Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, E
         progress.advance(fmt::format("pictures {} {} {}", name, stage_name, backend_name));
         if (Status status = run_stage(run, stage, by_backend[backend_name]); !status) return status;
       }
+      compare_silhouettes(name, backend_name, by_backend[backend_name], evaluation);
     }
     compare_backends(name, by_backend, evaluation);
   }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "compile/complexity.hpp"
 #include "compile/diagnostics.hpp"
 
 namespace relievo {
@@ -79,6 +80,12 @@ SpirvWords generate_spirv(const glslang::TIntermediate& intermediate) {
   return words;
 }
 
+tl::unexpected<Error> too_complex(const ComposedShader& source, std::string_view key) {
+  return fail(ErrorCode::compile, "compile.glsl",
+              fmt::format("the {} shader chains more than {} operators in one expression (permutation '{}')",
+                          to_string(source.stage), kMaxChainedOperators, key));
+}
+
 }  // namespace
 
 Result<std::vector<SpirvWords>> run_front_end(const ComposedProgram& program) {
@@ -86,6 +93,7 @@ Result<std::vector<SpirvWords>> run_front_end(const ComposedProgram& program) {
   std::vector<std::unique_ptr<ParsedShader>> shaders;
   glslang::TProgram linked;  // destroyed before the shaders it refers to
   for (const ComposedShader& source : program.shaders) {
+    if (has_runaway_expression(source.text)) return too_complex(source, program.key);
     shaders.push_back(std::make_unique<ParsedShader>(source));
     ParsedShader& parsed = *shaders.back();
     if (!parsed.parse()) return tl::unexpected(glsl_error(parsed.shader().getInfoLog(), program.key));

@@ -2,12 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#define GLM_FORCE_DEPTH_ZERO_TO_ONE
-#include <glm/ext/matrix_clip_space.hpp>
-#include <glm/ext/matrix_transform.hpp>
-#include <glm/mat4x4.hpp>
+#include <glm/geometric.hpp>
 
+#include "job/camera.hpp"
 #include "job/mesh_buffers.hpp"
+#include "job/oracle_picture.hpp"
 #include "job/program.hpp"
 #include "relievo/render.hpp"
 
@@ -29,16 +28,9 @@ static_assert(sizeof(SceneBlock) == 64 + 5 * 16 + 2 * 64);
 
 glm::vec3 to_vec3(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
-/// Vulkan's clip space: y down, depth in [0,1].
-glm::mat4 view_projection(const SceneCamera& camera, float aspect) {
-  glm::mat4 projection = glm::perspectiveRH_ZO(glm::radians(camera.vertical_fov), aspect, camera.near_plane, camera.far_plane);
-  projection[1][1] = -projection[1][1];
-  return projection * glm::lookAtRH(to_vec3(camera.position), to_vec3(camera.target), to_vec3(camera.up));
-}
-
 SceneBlock scene_block(const Scene& scene) {
   SceneBlock block{};
-  block.view_projection = view_projection(scene.camera, static_cast<float>(scene.image.width) / static_cast<float>(scene.image.height));
+  block.view_projection = view_projection(scene);
   block.eye = glm::vec4(to_vec3(scene.camera.position), 1);
   block.displacement = {scene.displacement.scale, scene.displacement.bias, 0, 0};
   block.albedo = glm::vec4(to_vec3(scene.material.albedo), scene.material.ambient);
@@ -170,40 +162,32 @@ Result<RenderResult> render_once(Backend& backend, const Registry& registry, con
   return rendered;
 }
 
-/// The exact hits of the pixels' rays, as the map that techniques/oracle replays: status and t.
-MapData exact_hits(const HeightMap& height, const Image& origins, const Image& directions) {
-  std::vector<Ray> rays;
-  std::size_t pixels = origins.pixels.size() / 4;
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const float *o = &origins.pixels[4 * i], *d = &directions.pixels[4 * i];
-    rays.push_back({o[0], o[1], o[2], d[0], d[1], d[2], o[3] > 0 ? d[3] : 0.0});
-  }
-  MapData map{"oracle_hits", origins.width, origins.height, 2, {}, AddressMode::clamp};
-  for (const Hit& hit : Oracle(height).trace(rays)) {
-    map.texels.push_back(static_cast<float>(hit.status));
-    map.texels.push_back(static_cast<float>(hit.t));
-  }
-  return map;
+/// The rays of the pixels come from the stage itself, written as pictures.
+Result<MapData> surface_hits(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh, MapSet& maps,
+                             RenderRequest request, std::vector<std::string>* messages) {
+  request.technique = "bump";
+  request.aov = Aov::ray_origin;
+  Result<RenderResult> origins = render_once(backend, registry, scene, mesh, maps, request, messages);
+  if (!origins) return tl::unexpected(origins.error());
+  request.aov = Aov::ray_direction;
+  Result<RenderResult> directions = render_once(backend, registry, scene, mesh, maps, request, messages);
+  if (!directions) return tl::unexpected(directions.error());
+  return exact_surface_hits(height_map_of(maps), origins->image, directions->image);
 }
 
-/// Pass one writes the rays of the pixels, pass two replays their exact hits.
+/// Computes the exact hits of the pixels on the CPU, then lets the stage replay them (techniques/oracle).
 Result<RenderResult> render_oracle(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
                                    MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
-  if (request.stage != "surface") {
-    return fail(ErrorCode::unsupported, "render.oracle-stage",
-                "the oracle replays one ray a pixel and stage '" + request.stage + "' has several; expected stage 'surface'");
-  }
-  RenderRequest rays = request;
-  rays.technique = "bump";
-  rays.aov = Aov::ray_origin;
-  Result<RenderResult> origins = render_once(backend, registry, scene, mesh, maps, rays, messages);
-  if (!origins) return origins;
-  rays.aov = Aov::ray_direction;
-  Result<RenderResult> directions = render_once(backend, registry, scene, mesh, maps, rays, messages);
-  if (!directions) return directions;
-  const MapData& height = maps.at("height");
+  Result<const StageDescriptor*> stage = registry.stage(request.stage);
+  if (!stage) return tl::unexpected(stage.error());
+  Result<MapData> hits = fail(ErrorCode::unsupported, "render.oracle-stage",
+                              "the oracle has no picture of stage '" + request.stage + "', which draws the mesh '" +
+                                  (*stage)->mesh + "'; expected 'base' or 'prisms'");
+  if ((*stage)->mesh == "base") hits = surface_hits(backend, registry, scene, mesh, maps, request, messages);
+  if ((*stage)->mesh == "prisms") hits = exact_prism_hits(height_map_of(maps), scene, mesh);
+  if (!hits) return tl::unexpected(hits.error());
   MapSet with_hits = maps;
-  with_hits["oracle_hits"] = exact_hits({height.width, height.height, height.texels, height.address}, origins->image, directions->image);
+  with_hits["oracle_hits"] = std::move(*hits);
   return render_once(backend, registry, scene, mesh, with_hits, request, messages);
 }
 

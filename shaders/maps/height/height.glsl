@@ -25,13 +25,15 @@ float relievo_height_texel(ivec2 texel, ivec2 extent) {
 float relievo_height_at(vec2 uv) {
 #if RELIEVO_FILTER_EXACT
   ivec2 extent = textureSize(relievo_height_map, 0);
-  vec2 position = clamp(uv * vec2(extent) - 0.5, vec2(-1.0e9), vec2(1.0e9));
+  precise vec2 position = clamp(uv * vec2(extent) - 0.5, vec2(-1.0e9), vec2(1.0e9));
   vec2 cell = floor(position);
-  vec2 f = position - cell;
+  precise vec2 f = position - cell;
   ivec2 texel = ivec2(cell);
   vec4 corners = vec4(relievo_height_texel(texel, extent), relievo_height_texel(texel + ivec2(1, 0), extent),
                       relievo_height_texel(texel + ivec2(0, 1), extent), relievo_height_texel(texel + ivec2(1, 1), extent));
-  return mix(mix(corners.x, corners.y, f.x), mix(corners.z, corners.w, f.x), f.y);
+  precise vec2 rows = corners.xz + f.x * (corners.yw - corners.xz);
+  precise float height = rows.x + f.y * (rows.y - rows.x);
+  return height;
 #else
   RELIEVO_COUNT_FETCHES(1);
   return textureLod(relievo_height_map, uv, 0.0).r;

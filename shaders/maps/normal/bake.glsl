@@ -2,7 +2,7 @@
 #include "shaders/lib/bake.glsl"
 
 void relievo_bake(ivec2 texel) {
-  ivec2 extent = relievo_bake_extent();
+  ivec2 extent = textureSize(relievo_height_map, 0);
   float left = relievo_height_texel(texel - ivec2(1, 0), extent), right = relievo_height_texel(texel + ivec2(1, 0), extent);
   float up = relievo_height_texel(texel - ivec2(0, 1), extent), down = relievo_height_texel(texel + ivec2(0, 1), extent);
   vec2 gradient = 0.5 * vec2(right - left, down - up) * vec2(extent);

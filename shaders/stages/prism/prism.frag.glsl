@@ -18,7 +18,7 @@ layout(location = 9) flat in vec3 prism_extrusion_2;
 layout(location = 10) flat in vec3 prism_extrusion_3;
 layout(location = 11) flat in vec3 prism_tangent;
 layout(location = 12) flat in vec3 prism_bitangent;
-layout(location = 13) flat in int prism_leaves_by_base;
+layout(location = 13) flat in int prism_exit;
 
 vec3 prism_blend(vec4 w, vec3 a, vec3 b, vec3 c, vec3 d) { return w.x * a + w.y * b + w.z * c + w.w * d; }
 
@@ -37,6 +37,7 @@ float prism_way_back(vec4 distances, vec4 change) {
 }
 
 void main() {
+  relievo_cell = prism_exit >> 1;
   vec4 change = prism_distances - prism_eye_distances;
   float back = prism_way_back(prism_distances, change);
   vec4 entry = prism_distances - back * change;
@@ -47,7 +48,7 @@ void main() {
   ray.origin.z = clamp(ray.origin.z, 0.0, 1.0);
   ray.direction = back * prism_point(change);
   // A ray that leaves through the base ends there, at H = 0 exactly, and not where rounding puts the fragment.
-  ray.t_max = prism_leaves_by_base != 0 && ray.direction.z < 0.0 ? RELIEVO_NO_LIMIT : 1.0;
+  ray.t_max = (prism_exit & 1) != 0 && ray.direction.z < 0.0 ? RELIEVO_NO_LIMIT : 1.0;
   ray.n_dot_v = relievo_n_dot_v(prism_extrusion(entry), view);
 
   Hit hit = Hit(RELIEVO_MISS, 0.0, ray.origin);

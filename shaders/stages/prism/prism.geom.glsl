@@ -33,7 +33,7 @@ layout(location = 9) flat out vec3 prism_extrusion_2;
 layout(location = 10) flat out vec3 prism_extrusion_3;
 layout(location = 11) flat out vec3 prism_tangent;
 layout(location = 12) flat out vec3 prism_bitangent;
-layout(location = 13) flat out int prism_leaves_by_base;
+layout(location = 13) flat out int prism_exit;           // 2 · cell + 1 if the ray leaves by the base
 
 struct Corner {
   vec3 position;
@@ -77,7 +77,7 @@ void prism_emit(Corner corners[4], int vertex, vec4 eye_distances, vec2 tile, in
   prism_extrusion_3 = corners[3].extrusion;
   prism_tangent = base_tangent[0];
   prism_bitangent = base_bitangent[0];
-  prism_leaves_by_base = leaves_by_base;
+  prism_exit = 2 * (3 * gl_PrimitiveIDIn + base_tetrahedron[0]) + leaves_by_base;
   gl_Position = relievo_clip_position(corners[vertex].position);
   EmitVertex();
 }

@@ -117,8 +117,9 @@ std::string stage_note(const Report& report, const Stage& stage) {
 }
 
 Result<std::string> stage_html(const Report& report, const Stage& stage) {
-  std::string html = fmt::format("<h3>Stage {}</h3>\n<p class=\"soft\">{}</p>\n", escape(stage.name),
-                                 escape(stage_note(report, stage)));
+  std::string note = stage_note(report, stage);
+  std::string html = fmt::format("<h3>Stage {}</h3>\n", escape(stage.name));
+  if (!note.empty()) html += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
   for (const std::string& technique : stage.techniques) {
     Result<std::string> items = technique_figures(report, stage.pictures.at(technique));
     if (!items) return items;

@@ -17,9 +17,11 @@ namespace relievo::cli {
 
 namespace {
 
-/// Okabe and Ito's colours, distinct to colour-blind readers, without the yellow that vanishes on white.
-constexpr std::array<const char*, 7> colors = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                               "#e69f00", "#56b4e9", "#000000"};
+/// Paul Tol's muted colours, distinct to colour-blind readers, and black; with as many marks as are prime to them, so
+/// that many techniques differ in one or the other.
+constexpr std::array<const char*, 10> colors = {"#332288", "#cc6677", "#117733", "#ddaa33", "#88ccee",
+                                                "#882255", "#44aa99", "#999933", "#aa4499", "#000000"};
+constexpr std::array<int, 7> marks = {7, 5, 9, 11, 13, 6, 4};  // gnuplot's point types: filled ones, then open ones
 
 /// A folder of ours under the system's temporary one, gone with its contents at the end.
 class TemporaryFolder {
@@ -109,7 +111,7 @@ std::vector<std::string> techniques_of(const Sweep& sweep) {
 
 std::string plot_script(const Sweep& sweep, double angle) {
   std::string blocks, curves;
-  int index = 0;
+  std::size_t index = 0;
   for (const std::string& technique : techniques_of(sweep)) {
     for (const char* filter : {"hardware", "exact"}) {
       std::string data = curve_data(sweep, technique, filter, angle);
@@ -118,18 +120,18 @@ std::string plot_script(const Sweep& sweep, double angle) {
       std::string block = fmt::format("$c{}{}", index, filter);
       blocks += fmt::format("{} << EOD\n{}EOD\n", block, data);
       curves += fmt::format(
-          "{} \\\n  {} with linespoints linecolor rgb '{}' linewidth 1.6 pointtype 7 pointsize 0.5 {} title '{}'",
-          curves.empty() ? "" : ",", block, colors[static_cast<std::size_t>(index) % colors.size()],
+          "{} {} with linespoints linecolor rgb '{}' linewidth 1.6 pointtype {} pointsize 0.6 {} title '{}'",
+          curves.empty() ? "" : ",", block, colors[index % colors.size()], marks[index % marks.size()],
           dashed ? "dashtype '-'" : "dashtype solid", dashed ? "" : technique);
     }
     ++index;
   }
   if (curves.empty()) return {};
-  return "set terminal svg noenhanced size 720,440 dynamic font 'sans-serif,13'\n"
+  return "set terminal svg noenhanced size 760,520 dynamic font 'sans-serif,13'\n"
          "set encoding utf8\nset logscale xy\nset grid linecolor rgb '#dddddd' linetype 1\nset border 3 linecolor rgb "
          "'#555555'\nset tics nomirror\n"
          "set xlabel 'time, as a ratio to relief 100 + 7'\nset ylabel 'wrong hits, %'\nset format '%g'\n"
-         "set offsets graph 0.03, graph 0.03\nset key outside below horizontal samplen 2\n" +
+         "set offsets graph 0.03, graph 0.03\nset key outside below horizontal samplen 2 maxrows 4\n" +
          blocks + "plot" + curves + "\n";
 }
 

@@ -63,14 +63,15 @@ void print_techniques(const Report& report) {
   constexpr double shown_angle = 20;
   const std::vector<RayRow>& rows = report.evaluation.rays;
   if (rows.empty()) return;
-  const RayRow& first = rows.front();
+  const std::string& map = rows.front().case_name;
+  const std::string& backend = report.evaluation.backends.front().name;
   auto find = [&](const std::string& technique, double angle) {
     return std::find_if(rows.begin(), rows.end(), [&](const RayRow& r) {
-      return r.case_name == first.case_name && r.backend == first.backend && r.filter == "exact" &&
-             r.technique == technique && r.angle == angle;
+      return r.case_name == map && r.backend == backend && r.filter == "exact" && r.technique == technique &&
+             r.angle == angle;
     });
   };
-  fmt::print("\n{} on {}, filter exact, at {}°\n", first.case_name, first.backend, shown_angle);
+  fmt::print("\n{} on {}, filter exact, at {}°\n", map, backend, shown_angle);
   fmt::print("{:<20} {:>9} {:>9} {:>10} {:>8} {:>8} {:>9} {:>8}\n", "technique", "wrong %", "missed %", "p99 texel",
              "steps", "fetches", "Mrays/s", "x relief");
   for (const std::string& technique : report.techniques) {

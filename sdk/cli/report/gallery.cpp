@@ -19,7 +19,7 @@ struct Stage {
   std::map<std::string, Rows> pictures;  ///< by technique, one a backend
 };
 
-/// The stages of a scene in the order drawn.
+/// The stages of a scene in the order drawn; those that displace the mesh itself, which others are held against, first.
 std::vector<Stage> stages_of(const Evaluation& evaluation, const std::string& scene) {
   std::vector<Stage> stages;
   for (const PictureRow& p : evaluation.pictures) {
@@ -30,6 +30,7 @@ std::vector<Stage> stages_of(const Evaluation& evaluation, const std::string& sc
     if (rows.empty()) stage->techniques.push_back(p.technique);
     rows.push_back(&p);
   }
+  std::stable_partition(stages.begin(), stages.end(), [](const Stage& s) { return s.pictures.contains(""); });
   return stages;
 }
 

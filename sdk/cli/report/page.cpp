@@ -17,6 +17,7 @@ h1 { font-size: 1.7rem; line-height: 1.2; margin: 0 0 .6rem; }
 h2 { font-size: 1.25rem; margin: 2.6rem 0 .6rem; padding-top: .8rem; border-top: 1px solid var(--line); }
 h3 { font-size: 1.05rem; margin: 1.8rem 0 .4rem; }
 h4 { font-size: .95rem; margin: 1.2rem 0 .4rem; }
+summary { cursor: pointer; margin: .6rem 0; }
 p { max-width: 75ch; margin: .4rem 0 .8rem; }
 .soft, figcaption { color: var(--soft); }
 .verdict { font-weight: 600; }
@@ -27,8 +28,7 @@ th, td { padding: .25rem .7rem; text-align: left; border-bottom: 1px solid var(-
 th { font-weight: 600; color: var(--soft); vertical-align: bottom; border-bottom-color: #aab2ba; }
 th.n, td.n { text-align: right; white-space: nowrap; }
 td.name { white-space: nowrap; }
-tr.first td { border-top: 1px solid #aab2ba; }
-.pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(220px, 1fr)); gap: 1rem; margin: .4rem 0 1.2rem; }
+.pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(250px, 1fr)); gap: 1rem; margin: .4rem 0 1.2rem; }
 figure { margin: 0; }
 figure img { display: block; width: 100%; height: auto; background: #101316; border-radius: 3px; }
 figcaption { font-size: .8rem; line-height: 1.4; margin-top: .3rem; font-variant-numeric: tabular-nums; }

@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   for (auto add : {add_list, add_describe, add_compile, add_bake, add_trace, add_render, add_bench, add_conform, add_report}) {
     add(app, context);
   }
+  add_techniques_option(app, context);
   try {
     app.parse(long_options(argc, argv));
   } catch (const CLI::ParseError& error) {

@@ -102,7 +102,11 @@ bool exact_walk_tile(Ray ray, inout ExactWalk walk, float end, int top, inout in
     ivec2 next = clamp(exact_cell_at(walk, leave), first, min(last, walk.extent) - 1);
     if (leave_u <= leave_v) next.x = walk.u.b > 0.0 ? last.x : first.x - 1;
     if (leave_v <= leave_u) next.y = walk.v.b > 0.0 ? last.y : first.y - 1;
-    walk.cell = clamp(next, ivec2(first_cell), walk.extent - 1);
+    // Rounding may put the border of the last cell a little before the tile's: the integers decide that the tile is left.
+    if (next.x < first_cell || next.x >= walk.extent.x) walk.u.leave = leave;
+    if (next.y < first_cell || next.y >= walk.extent.y) walk.v.leave = leave;
+    if (min(walk.u.leave, walk.v.leave) <= leave) return false;
+    walk.cell = next;
     walk.level = min(walk.level + 1, top);
   }
   return false;
@@ -130,10 +134,9 @@ Hit exact_trace(Ray ray) {
     walk.level = min(exact_start_level, top);
     float end = max(min(min(walk.u.leave, walk.v.leave), interval.exit), walk.t);
     if (exact_walk_tile(ray, walk, end, top, steps)) return relievo_hit_at(ray, RELIEVO_HIT, walk.t);
-    if (steps > 0 && end >= interval.exit) return relievo_end_of(ray, interval);
-    walk.t = end;
-    if (walk.u.leave <= end) tile.x += ray.direction.x > 0.0 ? 1 : -1;
-    if (walk.v.leave <= end) tile.y += ray.direction.y > 0.0 ? 1 : -1;
+    if (steps > 0 && walk.t >= interval.exit) return relievo_end_of(ray, interval);
+    if (walk.u.leave <= walk.t) tile.x += ray.direction.x > 0.0 ? 1 : -1;
+    if (walk.v.leave <= walk.t) tile.y += ray.direction.y > 0.0 ? 1 : -1;
   }
   return relievo_hit_at(ray, RELIEVO_EXHAUSTED, walk.t);
 }

@@ -36,8 +36,8 @@ inline LinearClaim linear_claim(const HeightMap& map, const Ray& ray, const Hit&
   constexpr int samples = 64;  // a step: finer than any cell crossing that matters, as steps are under a texel
   LinearClaim claim;
   claim.earliest = truth.t;
-  while (claim.earliest > 0 && clearance_at(map, ray, claim.earliest - step / samples) <= float_clearance)
-    claim.earliest = std::max(0.0, claim.earliest - step / samples);
+  for (int i = 1; i <= 64 * samples && clearance_at(map, ray, claim.earliest) <= float_clearance; ++i)
+    claim.earliest = std::max(0.0, truth.t - step * i / samples);
   const auto below = [&](double t) {
     return t >= exit ? reaches_base : clearance_at(map, ray, t) <= -float_clearance;
   };

@@ -61,7 +61,7 @@ inline std::vector<Hit> trace_on(const std::string& name, const HeightMap& map, 
   MapSet maps = map_set(map);
   std::vector<std::string> messages;
   Result<std::vector<TraceResult>> traced = trace(backend(name), from, maps, rays, {&request, 1}, 1, &messages);
-  EXPECT_THAT(messages, testing::IsEmpty()) << name;
+  EXPECT_THAT(messages, ::testing::IsEmpty()) << name;
   if (!traced) {
     ADD_FAILURE() << name << ": " << format(traced.error());
     return std::vector<Hit>(rays.size());
@@ -75,7 +75,7 @@ inline RenderResult render_on(const std::string& name, const Scene& scene, const
   MapSet maps = map_set(map);
   std::vector<std::string> messages;
   Result<RenderResult> rendered = render(backend(name), from, scene, mesh, maps, request, &messages);
-  EXPECT_THAT(messages, testing::IsEmpty()) << name;
+  EXPECT_THAT(messages, ::testing::IsEmpty()) << name;
   if (!rendered) {
     ADD_FAILURE() << name << ": " << format(rendered.error());
     RenderResult empty;

@@ -18,6 +18,7 @@ struct BakeOptions {
 /// PNG shows signed channels, as normal maps do: [-1,1] becomes [0,1].
 Image to_image(const MapData& map, bool for_png) {
   Image image{map.width, map.height, map.channels, map.texels};
+  image.pixels.resize(map_level(map, 1).offset * static_cast<std::size_t>(map.channels));  // level 0
   bool is_signed = std::any_of(map.texels.begin(), map.texels.end(), [](float t) { return t < 0; });
   if (for_png && is_signed) {
     for (float& value : image.pixels) value = 0.5f + 0.5f * value;

@@ -31,12 +31,19 @@ void Context::report(const Error& error) {
 CLI::App* add_command(CLI::App& app, Context& context, const std::string& name, const std::string& title,
                       std::function<Status()> run) {
   CLI::App* command = app.add_subcommand(name, title);
-  command->add_option("--techniques-dir,--techniques-folder,-I", context.folders, "Folder of technique, map or stage folders to add")->type_name("DIR");
+  command->add_option("--techniques-dir,--techniques-folder,-I", context.folders, "Folder of technique, map or stage folders to add")->type_name("DIR")->allow_extra_args(false);
   command->add_flag("--json", context.json, "Machine-readable output");
   command->callback([&context, run = std::move(run)] {
     if (Status status = run(); !status) context.report(status.error());
   });
   return command;
+}
+
+void add_techniques_option(CLI::App& app, Context& context) {
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    if (command->get_option_no_throw("--techniques")) continue;
+    command->add_option("--techniques", context.folders, "As --techniques-dir")->type_name("DIR")->allow_extra_args(false);
+  }
 }
 
 namespace {

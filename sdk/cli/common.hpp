@@ -29,6 +29,10 @@ struct Context {
 CLI::App* add_command(CLI::App& app, Context& context, const std::string& name, const std::string& title,
                       std::function<Status()> run);
 
+/// Gives every subcommand that does not name techniques by `--techniques` this spelling of `--techniques-dir`.
+/// Call it when all subcommands are there.
+void add_techniques_option(CLI::App& app, Context& context);
+
 /// --set k=v, … : values by "owner.parameter" and filters by technique.
 struct Settings {
   std::map<std::string, double> values;

@@ -14,7 +14,7 @@ struct CompileOptions {
   std::vector<std::string> techniques, targets, set, defines, bindings;
   std::string stage = "surface", address = "repeat", filter = "exact", aov = "color", output = "-", depfile;
   bool count = false, depend = false, keep_unoptimized = false;
-  int jobs = 1;
+  unsigned jobs = 0;
 };
 
 constexpr std::string_view stage_suffix(ShaderStage stage) {
@@ -121,6 +121,7 @@ Status compile_one(const Registry& registry, const CompileOptions& options, std:
   if (std::find(options.targets.begin(), options.targets.end(), "all") != options.targets.end()) targets = allowed_targets(*composed, (*stage)->fallback);
   relievo::CompileOptions compile_options;
   compile_options.optimize = !options.keep_unoptimized;
+  compile_options.threads = options.jobs;
   Result<CompiledProgram> compiled = compile(*composed, targets, compile_options, (*stage)->fallback);
   if (!compiled) return tl::unexpected(compiled.error());
   std::string base = technique.empty() ? options.stage : technique + "." + options.stage;
@@ -167,7 +168,7 @@ void add_compile(CLI::App& app, Context& context) {
   command->add_option("--set", options->set, "parameter=value");
   command->add_option("-D", options->defines, "parameter=value, as a macro");
   command->add_option("--bind", options->bindings, "owner.parameter=macro|specialization|uniform");
-  command->add_option("-j", options->jobs, "Threads; the outputs do not depend on it")->check(CLI::Range(1, 1024));
+  command->add_option("-j", options->jobs, "Threads; 0 = all. The outputs do not depend on it")->check(CLI::Range(0, 1024))->capture_default_str();
   command->add_flag("--count", options->count, "Count steps and fetches");
   command->add_flag("--O0", options->keep_unoptimized, "Do not optimise");
   command->add_flag("--MD", options->depend, "Write a depfile");

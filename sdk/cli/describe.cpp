@@ -28,7 +28,7 @@ nlohmann::json describe(const TechniqueDescriptor& t) {
 
 nlohmann::json describe(const MapDescriptor& m) {
   nlohmann::json json = common_json(m, "map");
-  json.update({{"inputs", m.inputs}, {"channels", m.channels}, {"sampler", m.sampler}, {"set", m.set}, {"binding", m.binding}, {"module", m.module}, {"access", m.access}});
+  json.update({{"inputs", m.inputs}, {"channels", m.channels}, {"levels", to_string(m.levels)}, {"sampler", m.sampler}, {"set", m.set}, {"binding", m.binding}, {"module", m.module}, {"access", m.access}});
   return json;
 }
 

@@ -37,20 +37,25 @@ bool relievo_interval(Ray ray, out Interval interval) {
     precise float lid = (1.0 - height) / fall;
     interval.enter = lid;
   }
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
+  relievo_clip_axis(ray.origin.x, ray.direction.x, interval);
+  relievo_clip_axis(ray.origin.y, ray.direction.y, interval);
+  if (interval.enter > interval.exit) return false;
+#endif
   if (fall < 0.0) {
-    precise float base = max(-height / fall, 0.0);
+    // A ray that enters a clip map's domain below the base meets its side there.
+    precise float base = max(-height / fall, interval.enter);
     if (base <= interval.exit) {
       interval.exit = base;
       interval.end_status = RELIEVO_HIT;
     }
   } else if (fall > 0.0) {
     precise float lid = max((1.0 - height) / fall, 0.0);
-    interval.exit = min(interval.exit, lid);
+    if (lid < interval.exit) {
+      interval.exit = lid;
+      interval.end_status = RELIEVO_MISS;
+    }
   }
-#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
-  relievo_clip_axis(ray.origin.x, ray.direction.x, interval);
-  relievo_clip_axis(ray.origin.y, ray.direction.y, interval);
-#endif
   float speed = max(abs(ray.direction.x), abs(ray.direction.y));
   if ((interval.exit - interval.enter) * speed > RELIEVO_MAX_TRAVEL) {
     interval.exit = interval.enter + RELIEVO_MAX_TRAVEL / speed;

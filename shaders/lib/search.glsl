@@ -76,3 +76,22 @@ float relievo_false_position(Bracket bracket) {
   precise float t = bracket.above + (bracket.below - bracket.above) * clamp(fraction, 0.0, 1.0);
   return t;
 }
+
+// The whole interval as a bracket; false when the exit lies above the surface. The base is below by definition.
+bool relievo_whole_bracket(Ray ray, Interval interval, float clearance, out Bracket bracket) {
+  float end = relievo_clearance(relievo_point(ray, interval.exit));
+  if (interval.end_status == RELIEVO_HIT) end = min(end, 0.0);
+  bracket = Bracket(interval.enter, interval.exit, clearance, end);
+  return end <= 0.0;
+}
+
+// Repeats the chord intersection `steps` times, each time replacing the end of its side; returns the last intersection.
+float relievo_refine_by_chords(Ray ray, int steps, Bracket bracket) {
+  float t = relievo_false_position(bracket);
+  for (int i = 1; i < steps; ++i) {
+    RELIEVO_COUNT_STEP();
+    relievo_replace(bracket, t, relievo_clearance(relievo_point(ray, t)));
+    t = relievo_false_position(bracket);
+  }
+  return t;
+}

@@ -101,6 +101,8 @@ using OpenBackends = std::map<std::string, std::unique_ptr<Backend>>;
 Status evaluate_rays(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress);
 Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress);
 Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress);
+/// Whether a technique claims first hits at all: the others miss some, so their silhouettes and cracks say nothing of the stage.
+bool holds_silhouette(const Registry& registry, const std::string& technique);
 /// The claims, from the rows.
 void judge(const EvaluationInput& input, Evaluation& evaluation);
 

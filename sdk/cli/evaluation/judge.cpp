@@ -12,12 +12,6 @@ constexpr double rays_equal_percent = 99.99;     // of non-ambiguous rays, betwe
 constexpr double pixels_within_percent = 99.9;   // of pixels, within 1/255, between two backends
 constexpr double silhouette_iou = 0.99;          // prisms against the finely displaced mesh
 
-/// Techniques that displace nothing make no silhouette to compare.
-bool displaces(const Registry& registry, const std::string& technique) {
-  auto found = registry.techniques.find(technique);
-  return found != registry.techniques.end() && found->second.technique_class != TechniqueClass::non_iterative;
-}
-
 bool is_backend(const Evaluation& evaluation, const std::string& name) {
   return std::any_of(evaluation.backends.begin(), evaluation.backends.end(), [&](const BackendInfo& b) { return b.name == name; });
 }
@@ -46,6 +40,11 @@ void check_none(const std::string& name, std::uint64_t found, std::size_t of, co
 
 }  // namespace
 
+bool holds_silhouette(const Registry& registry, const std::string& technique) {
+  auto found = registry.techniques.find(technique);
+  return found != registry.techniques.end() && found->second.first_hit != FirstHit::never;
+}
+
 void judge(const EvaluationInput& input, Evaluation& evaluation) {
   using Judged = std::tuple<bool, double, std::string>;
   std::vector<Check>& checks = evaluation.checks;
@@ -57,7 +56,7 @@ void judge(const EvaluationInput& input, Evaluation& evaluation) {
   }, checks);
   check_least(evaluation.picture_agreements, "prism silhouette against the displaced mesh, IoU", silhouette_iou, "", [&](const PictureAgreement& p) {
     bool closed = std::any_of(input.scenes.begin(), input.scenes.end(), [&](const auto& s) { return s.first == p.scene && s.second.scene.mesh.kind != MeshKind::plane; });
-    return Judged{closed && p.stage == "prism" && p.right == "vertex" && displaces(*input.registry, p.technique), p.difference.mask_iou,
+    return Judged{closed && p.stage == "prism" && p.right == "vertex" && holds_silhouette(*input.registry, p.technique), p.difference.mask_iou,
                   fmt::format("{} of {} on {}", p.technique, p.scene, p.left)};
   }, checks);
   std::uint64_t cracks = 0, non_finite = 0, changing = 0;

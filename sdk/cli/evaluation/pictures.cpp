@@ -186,7 +186,7 @@ Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Eva
       Result<RenderResult> reference = draw(run, "vertex", "");
       if (!reference) return tl::unexpected(reference.error());
       for (const std::string& technique : input.techniques) {
-        if (technique == "bump" || technique == "parallax") continue;  // flat by design: no silhouette to hold
+        if (!holds_silhouette(*input.registry, technique)) continue;
         if (Status status = count_scene_cracks(run, "prism", reference->color, technique); !status) return status;
       }
     }

@@ -50,6 +50,7 @@ struct CompiledProgram {
 struct CompileOptions {
   bool optimize = true;
   bool validate = true;  ///< spirv-val on the result
+  unsigned threads = 1;  ///< for the shaders and targets of one program; 0 = all. The outputs do not depend on it
 };
 
 /// Compiles a program for all `targets`; SPIR-V is always made. Errors: "compile.glsl" with the author's file and line,

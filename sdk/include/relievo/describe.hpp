@@ -56,11 +56,17 @@ struct TechniqueDescriptor {
   std::string file;                    ///< source path of the descriptor
 };
 
+/// `single`: as large as the height map. `pyramid`: the next powers of two, with every level down to 1×1; level k is baked
+/// from level k − 1.
+enum class MapLevels { single, pyramid };
+std::string_view to_string(MapLevels levels);
+
 /// A map baked by a compute module: reads its inputs, writes `channels` floats a texel.
 struct MapDescriptor {
   std::string name, title, source, summary;
   std::vector<std::string> inputs;     ///< other maps; empty for `height`, which the caller provides
   int channels = 1;                    ///< 1–4
+  MapLevels levels = MapLevels::single;
   std::string sampler;                 ///< GLSL name, e.g. "relievo_height_map"
   int set = 1, binding = 0;            ///< the binding contract; unique among maps
   std::vector<Parameter> parameters;

@@ -12,14 +12,22 @@
 
 namespace relievo {
 
-/// A map in memory: `channels` floats a texel, interleaved, row 0 first.
+/// A map in memory: `channels` floats a texel, interleaved, row 0 first, the levels one after another.
 struct MapData {
   std::string name;
-  int width = 0, height = 0;  ///< texels
+  int width = 0, height = 0;  ///< texels of level 0; level k has max(1, extent >> k)
   int channels = 1;           ///< 1–4
   std::vector<float> texels;
   AddressMode address = AddressMode::repeat;
+  int levels = 1;
 };
+
+/// Texels of level k, and of all levels before it.
+struct MapLevel {
+  int width = 0, height = 0;
+  std::size_t offset = 0;  ///< in texels
+};
+MapLevel map_level(const MapData& map, int level);
 
 /// Maps by name; "height" is always there.
 using MapSet = std::map<std::string, MapData, std::less<>>;

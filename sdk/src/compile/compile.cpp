@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 #include <set>
 
 #include "compile/bindings.hpp"
@@ -12,6 +14,7 @@
 #include "compile/interface.hpp"
 #include "compile/lint.hpp"
 #include "compile/optimize.hpp"
+#include "compile/parallel.hpp"
 #include "compile/reflection.hpp"
 
 namespace relievo {
@@ -36,32 +39,38 @@ Status check_request(const ComposedProgram& program, std::span<const Target> tar
   return {};
 }
 
-/// One shader from the front end's SPIR-V to what ships: linted, validated, optimized.
-Result<SpirvWords> finish_spirv(const SpirvWords& front_end_words, const CompileOptions& options,
-                                std::string_view key) {
+/// Validates what ships; when that fails, the front end's words say whose fault it is.
+Status validate_pipeline(const SpirvWords& before, const SpirvWords& after, std::string_view key) {
+  Status shipped = validate_spirv(after, key, "after the optimizer");
+  if (shipped) return {};
+  if (Status ok = validate_spirv(before, key, "after the front end"); !ok) return ok;
+  return shipped;
+}
+
+/// One shader from the front end's SPIR-V to what ships: linted, optimized, validated, parsed.
+Result<ShaderModule> finish_module(ShaderStage stage, const SpirvWords& front_end_words, const CompileOptions& options,
+                                   std::string_view key) {
   if (auto ok = lint_implicit_lod_in_loop(front_end_words, key); !ok) return tl::unexpected(ok.error());
-  SpirvWords words = strip_lines(front_end_words);
+  SpirvWords plain = strip_lines(front_end_words);
+  Result<SpirvWords> words = options.optimize ? optimize_spirv(plain, key) : Result<SpirvWords>(plain);
+  if (!words) return tl::unexpected(words.error());
   if (options.validate) {
-    if (auto ok = validate_spirv(words, key, "after the front end"); !ok) return tl::unexpected(ok.error());
+    if (auto ok = validate_pipeline(plain, *words, key); !ok) return tl::unexpected(ok.error());
   }
-  if (!options.optimize) return words;
-  Result<SpirvWords> optimized = optimize_spirv(words, key);
-  if (optimized && options.validate) {
-    if (auto ok = validate_spirv(*optimized, key, "after the optimizer"); !ok) return tl::unexpected(ok.error());
-  }
-  return optimized;
+  return parse_module(stage, *std::move(words), key);
 }
 
 Result<std::vector<ShaderModule>> make_modules(const ComposedProgram& program, const CompileOptions& options) {
   Result<std::vector<SpirvWords>> front_end = run_front_end(program);
   if (!front_end) return tl::unexpected(front_end.error());
+  std::vector<std::optional<Result<ShaderModule>>> results(program.shaders.size());
+  run_parallel(results.size(), options.threads, [&](std::size_t i) {
+    results[i] = finish_module(program.shaders[i].stage, (*front_end)[i], options, program.key);
+  });
   std::vector<ShaderModule> modules;
-  for (std::size_t i = 0; i < program.shaders.size(); ++i) {
-    Result<SpirvWords> words = finish_spirv((*front_end)[i], options, program.key);
-    if (!words) return tl::unexpected(words.error());
-    Result<ShaderModule> module = parse_module(program.shaders[i].stage, *std::move(words), program.key);
-    if (!module) return tl::unexpected(module.error());
-    modules.push_back(*std::move(module));
+  for (auto& result : results) {
+    if (!*result) return tl::unexpected(result->error());
+    modules.push_back(*std::move(*result));
   }
   return modules;
 }
@@ -76,17 +85,28 @@ Status check_modules(std::span<const ShaderModule> modules, const ComposedProgra
   return {};
 }
 
-Result<std::map<std::string, std::string>> emit_all(std::span<const Target> targets, const ShaderModule& module,
-                                                    const BindingLayout& layout, const StageNeighbours& neighbours,
-                                                    std::string_view key) {
-  std::map<std::string, std::string> texts;
-  for (const Target& target : targets) {
-    if (target.language == Language::spirv) continue;
-    Result<std::string> text = emit_target(target, module, layout, neighbours, key);
-    if (!text) return tl::unexpected(text.error());
-    texts[to_string(target)] = *std::move(text);
+/// Every shader for every target with a text; tasks are independent and each compiles a copy of its module.
+Status emit_all(std::span<const Target> targets, std::span<const ShaderModule> modules, const BindingLayout& layout,
+                const CompileOptions& options, CompiledProgram& compiled) {
+  std::vector<Target> texts;
+  std::copy_if(targets.begin(), targets.end(), std::back_inserter(texts),
+               [](const Target& target) { return target.language != Language::spirv; });
+  const std::vector<StageNeighbours> neighbours = find_neighbours(modules);
+  std::vector<std::optional<Result<std::string>>> results(modules.size() * texts.size());
+  run_parallel(results.size(), options.threads, [&](std::size_t task) {
+    std::size_t module = task / texts.size();
+    results[task] = emit_target(texts[task % texts.size()], modules[module], layout, neighbours[module], compiled.key);
+  });
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    CompiledShader shader{modules[i].stage, modules[i].spirv, {}};
+    for (std::size_t k = 0; k < texts.size(); ++k) {
+      Result<std::string>& text = *results[i * texts.size() + k];
+      if (!text) return tl::unexpected(text.error());
+      shader.text[to_string(texts[k])] = *std::move(text);
+    }
+    compiled.shaders.push_back(std::move(shader));
   }
-  return texts;
+  return {};
 }
 
 Result<CompiledProgram> run_pipeline(const ComposedProgram& program, std::span<const Target> targets,
@@ -100,12 +120,7 @@ Result<CompiledProgram> run_pipeline(const ComposedProgram& program, std::span<c
 
   CompiledProgram compiled;
   compiled.key = program.key;
-  const std::vector<StageNeighbours> neighbours = find_neighbours(*modules);
-  for (std::size_t i = 0; i < modules->size(); ++i) {
-    auto texts = emit_all(targets, (*modules)[i], *layout, neighbours[i], program.key);
-    if (!texts) return tl::unexpected(texts.error());
-    compiled.shaders.push_back({(*modules)[i].stage, (*modules)[i].spirv, *std::move(texts)});
-  }
+  if (auto ok = emit_all(targets, *modules, *layout, options, compiled); !ok) return tl::unexpected(ok.error());
   for (const BoundResource& resource : layout->resources) compiled.bindings.push_back(resource.slot);
   Result<std::string> reflection = make_reflection(program, *modules, *layout, targets);
   if (!reflection) return tl::unexpected(reflection.error());

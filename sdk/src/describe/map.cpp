@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "describe/descriptor_fields.hpp"
 
 namespace relievo {
 namespace {
+
+constexpr std::array<std::string_view, 2> level_names = {"single", "pyramid"};
 
 bool is_glsl_identifier(std::string_view name) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -34,10 +37,11 @@ void read_binding(TomlReader& reader, MapDescriptor& map) {
 }
 
 void read_map(TomlReader& reader, MapDescriptor& map) {
-  reader.allow_keys({"schema", "name", "title", "source", "summary", "inputs", "channels", "sampler", "binding",
+  reader.allow_keys({"schema", "name", "title", "source", "summary", "inputs", "channels", "levels", "sampler", "binding",
                      "module", "access", "features", "loops", "parameters"});
   map.inputs = reader.names("inputs");
   map.channels = reader.integer("channels", 1, 4);
+  map.levels = reader.choice_of<MapLevels>("levels", level_names, MapLevels::single);
   map.sampler = read_sampler(reader);
   read_binding(reader, map);
   map.module = reader.path_or_empty("module");
@@ -50,6 +54,8 @@ void read_map(TomlReader& reader, MapDescriptor& map) {
 }
 
 }  // namespace
+
+std::string_view to_string(MapLevels levels) { return level_names[static_cast<std::size_t>(levels)]; }
 
 Result<MapDescriptor> parse_map(std::string_view text, const std::string& path) {
   return parse_descriptor<MapDescriptor>(text, path, "map", read_map);

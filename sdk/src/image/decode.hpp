@@ -43,6 +43,10 @@ Status check_extent(const ImageSource& source, std::int64_t width, std::int64_t 
 /// Every chunk of a PNG is whole and has its checksum: stb checks neither.
 Status check_png(const ImageSource& source);
 
+/// The segments of a JPEG follow each other up to its end mark, and no Huffman table has more codes than stb 2.27 has
+/// room for.
+Status check_jpeg(const ImageSource& source);
+
 /// Run-length BMPs, which stb does not read: rewritten as the same BMP without compression.
 bool is_run_length_bmp(Bytes bytes);
 Result<std::vector<std::uint8_t>> expand_bmp(const ImageSource& source);

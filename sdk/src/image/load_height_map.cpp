@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
-#include <new>
 
 #include "image/array.hpp"
 #include "image/decode.hpp"
@@ -115,8 +115,9 @@ Result<HeightMap> decode(const ImageSource& source) {
 Result<HeightMap> decode_height_map(const ImageSource& source) {
   try {
     return decode(source);
-  } catch (const std::bad_alloc&) {
-    return file_error(source.path, "image.memory", "needs more memory than there is");
+  } catch (const std::exception&) {
+    return file_error(source.path, "image.memory",
+                      "cannot be decoded: it needs more memory than there is, or its decoder fails");
   }
 }
 

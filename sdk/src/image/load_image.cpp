@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <cctype>
-#include <new>
+#include <exception>
 #include <string_view>
 
 #include "image/decode.hpp"
@@ -56,13 +56,16 @@ Result<DecodedImage> decode_image(const ImageSource& source) {
   }
   if (starts_with(bytes, "\x76\x2f\x31\x01")) return decode_exr(source);
   if (starts_with(bytes, "PF") || starts_with(bytes, "Pf")) return decode_pfm(source);
+  if (starts_with(bytes, "\xff\xd8\xff")) {
+    if (auto whole = check_jpeg(source); !whole) return tl::unexpected(whole.error());
+    return decode_stb(source);
+  }
   if (is_run_length_bmp(bytes)) {
     const auto expanded = expand_bmp(source);
     if (!expanded) return tl::unexpected(expanded.error());
     return decode_stb({source.path, *expanded});
   }
-  if (starts_with(bytes, "BM") || starts_with(bytes, "\xff\xd8\xff") || starts_with(bytes, "#?") ||
-      is_named_tga(source.path)) {
+  if (starts_with(bytes, "BM") || starts_with(bytes, "#?") || is_named_tga(source.path)) {
     return decode_stb(source);
   }
   return file_error(source.path, "image.format",
@@ -76,8 +79,9 @@ Result<Image> load_image(const std::filesystem::path& path) {
     auto decoded = decode_image({path, *bytes});
     if (!decoded) return tl::unexpected(decoded.error());
     return std::move(decoded->image);
-  } catch (const std::bad_alloc&) {
-    return file_error(path, "image.memory", "needs more memory than there is");
+  } catch (const std::exception&) {
+    return file_error(path, "image.memory",
+                      "cannot be decoded: it needs more memory than there is, or its decoder fails");
   }
 }
 

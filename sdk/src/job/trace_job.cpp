@@ -1,4 +1,5 @@
 /// The `ray` stage as a Job.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -34,17 +35,21 @@ double tile_of(double coordinate, AddressMode address) {
   return 0;
 }
 
+constexpr double largest_float = std::numeric_limits<float>::max();
+
+/// What is not finite stays so, for the stage to refuse.
 float to_float(double value) {
-  constexpr double limit = std::numeric_limits<float>::max();
-  if (std::isnan(value)) return std::numeric_limits<float>::quiet_NaN();
-  return static_cast<float>(std::fmin(std::fmax(value, -limit), limit));
+  return static_cast<float>(std::isfinite(value) ? std::clamp(value, -largest_float, largest_float) : value);
 }
+
+/// No limit is the largest float on the other side (RELIEVO_NO_LIMIT).
+float limit_to_float(double t_max) { return to_float(t_max > largest_float ? largest_float : t_max); }
 
 PackedRay pack(const Ray& ray, AddressMode address) {
   return {to_float(ray.u - tile_of(ray.u, address)),
           to_float(ray.v - tile_of(ray.v, address)),
           to_float(ray.h),
-          to_float(ray.t_max),
+          limit_to_float(ray.t_max),
           to_float(ray.du),
           to_float(ray.dv),
           to_float(ray.dh),

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
@@ -12,7 +14,8 @@ namespace {
 
 /// The twin of the block `Bake` in shaders/lib/bake.glsl.
 struct BakeBlock {
-  std::array<std::int32_t, 4> size;  // width, height, channels, level
+  std::array<std::int32_t, 4> size;    // width, height, channels, level
+  std::array<std::int32_t, 4> source;  // of the level below: width, height, offset; offset of this level, in texels
 };
 
 constexpr int bake_block_binding = 1, bake_texels_binding = 2;
@@ -28,23 +31,45 @@ std::map<std::string, double> values_of(const std::map<std::string, double>& val
   return own;
 }
 
+BakeBlock bake_block(const MapData& output, int level) {
+  MapLevel here = map_level(output, level), below = map_level(output, std::max(0, level - 1));
+  return {{here.width, here.height, output.channels, level},
+          {below.width, below.height, static_cast<std::int32_t>(below.offset), static_cast<std::int32_t>(here.offset)}};
+}
+
+/// One dispatch a level: a command sees what earlier ones wrote.
 Job bake_job(const PreparedProgram& prepared, const MapDescriptor& descriptor, const MapSet& maps, const MapData& output) {
   Job job;
   job.name = "bake " + descriptor.name;
   job.programs.push_back(prepared.program);
-  Dispatch dispatch;
-  bind_maps(prepared.composed, maps, job, dispatch.resources);
-  bind_parameters(prepared.composed, job, dispatch.resources);
-  BakeBlock block{{output.width, output.height, output.channels, 0}};
-  bind_buffer(0, bake_block_binding, make_buffer("Bake", &block, sizeof(block)), job, dispatch.resources);
-  std::size_t texels = static_cast<std::size_t>(output.width) * static_cast<std::size_t>(output.height);
-  Buffer result{"MapTexels", texels * static_cast<std::size_t>(output.channels) * sizeof(float), {}};
-  int index = bind_buffer(0, bake_texels_binding, std::move(result), job, dispatch.resources);
-  dispatch.groups = {(static_cast<std::uint32_t>(output.width) + bake_group - 1) / bake_group,
-                     (static_cast<std::uint32_t>(output.height) + bake_group - 1) / bake_group, 1};
-  job.commands.emplace_back(std::move(dispatch));
+  std::vector<ResourceBinding> shared;
+  bind_maps(prepared.composed, maps, job, shared);
+  bind_parameters(prepared.composed, job, shared);
+  MapLevel end = map_level(output, output.levels);
+  Buffer result{"MapTexels", end.offset * static_cast<std::size_t>(output.channels) * sizeof(float), {}};
+  int index = bind_buffer(0, bake_texels_binding, std::move(result), job, shared);
+  for (int level = 0; level < output.levels; ++level) {
+    Dispatch dispatch;
+    dispatch.resources = shared;
+    BakeBlock block = bake_block(output, level);
+    bind_buffer(0, bake_block_binding, make_buffer("Bake", &block, sizeof(block)), job, dispatch.resources);
+    keep_contract(prepared.program, dispatch.resources);
+    auto groups = [](int extent) { return (static_cast<std::uint32_t>(extent) + bake_group - 1) / bake_group; };
+    dispatch.groups = {groups(block.size[0]), groups(block.size[1]), 1};
+    job.commands.emplace_back(std::move(dispatch));
+  }
   job.read_backs.push_back({ReadBack::Source::buffer, index, 0});
   return job;
+}
+
+/// The map's extent and levels, without its texels.
+MapData empty_map(const MapDescriptor& descriptor, const MapData& height) {
+  MapData map{descriptor.name, height.width, height.height, descriptor.channels, {}, height.address, 1};
+  if (descriptor.levels == MapLevels::single) return map;
+  map.width = static_cast<int>(std::bit_ceil(static_cast<unsigned>(height.width)));
+  map.height = static_cast<int>(std::bit_ceil(static_cast<unsigned>(height.height)));
+  map.levels = std::bit_width(static_cast<unsigned>(std::max(map.width, map.height)));
+  return map;
 }
 
 }  // namespace
@@ -64,7 +89,7 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
   Result<PreparedProgram> prepared = prepare_composed(std::move(*composed), backend.info().shader_target);
   if (!prepared) return tl::unexpected(prepared.error());
 
-  MapData output{descriptor.name, height.width, height.height, descriptor.channels, {}, height.address};
+  MapData output = empty_map(descriptor, height);
   Result<JobResult> result = backend.execute(bake_job(*prepared, descriptor, maps, output));
   if (!result) return tl::unexpected(result.error());
   append_messages(*result, messages);

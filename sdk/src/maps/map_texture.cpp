@@ -1,4 +1,5 @@
 /// Maps as textures of a Job.
+#include <algorithm>
 #include <cstring>
 
 #include "relievo/maps.hpp"
@@ -18,7 +19,27 @@ TexelAddress texel_address(AddressMode mode) {
   }
 }
 
+std::vector<std::byte> level_bytes(const MapData& map, const MapLevel& level, int stored) {
+  std::size_t count = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height);
+  std::size_t channels = static_cast<std::size_t>(map.channels), stride = static_cast<std::size_t>(stored) * sizeof(float);
+  std::vector<std::byte> bytes(count * stride);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::memcpy(bytes.data() + i * stride, map.texels.data() + (level.offset + i) * channels, channels * sizeof(float));
+  }
+  return bytes;
+}
+
 }  // namespace
+
+MapLevel map_level(const MapData& map, int level) {
+  MapLevel result{map.width, map.height, 0};
+  for (int k = 0; k < level; ++k) {
+    result.offset += static_cast<std::size_t>(result.width) * static_cast<std::size_t>(result.height);
+    result.width = std::max(1, result.width / 2);
+    result.height = std::max(1, result.height / 2);
+  }
+  return result;
+}
 
 MapSet map_set(const HeightMap& height_map) {
   MapSet maps;
@@ -34,14 +55,8 @@ Texture map_texture(const MapData& map) {
   texture.width = map.width;
   texture.height = map.height;
   texture.sampler.address.fill(texel_address(map.address));
-  std::size_t count = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
-  std::vector<std::byte> bytes(count * static_cast<std::size_t>(stored) * sizeof(float));
-  for (std::size_t i = 0; i < count; ++i) {
-    std::memcpy(bytes.data() + i * static_cast<std::size_t>(stored) * sizeof(float),
-                map.texels.data() + i * static_cast<std::size_t>(map.channels),
-                static_cast<std::size_t>(map.channels) * sizeof(float));
-  }
-  texture.data.push_back(std::move(bytes));
+  texture.levels = map.levels;
+  for (int k = 0; k < map.levels; ++k) texture.data.push_back(level_bytes(map, map_level(map, k), stored));
   return texture;
 }
 

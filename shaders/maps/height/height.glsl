@@ -2,15 +2,15 @@
 // interpolates in float. Texel (i,j) is centred at ((i + 1/2)/W, (j + 1/2)/H).
 #include "shaders/lib/ray.glsl"
 
+// i modulo n in [0, n). GLSL leaves `%` undefined on negative operands, and drivers differ there.
+int relievo_modulo(int i, int n) { return i >= 0 ? i % n : n - 1 - (-1 - i) % n; }
+
 int relievo_wrap_texel(int i, int extent) {
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
-  int r = i % extent;
-  return r < 0 ? r + extent : r;
+  return relievo_modulo(i, extent);
 #elif RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR
-  int period = 2 * extent;
-  int r = i % period;
-  r = r < 0 ? r + period : r;
-  return r < extent ? r : period - 1 - r;
+  int r = relievo_modulo(i, 2 * extent);
+  return r < extent ? r : 2 * extent - 1 - r;
 #else
   return clamp(i, 0, extent - 1);
 #endif

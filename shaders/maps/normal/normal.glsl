@@ -3,3 +3,6 @@ vec2 relievo_normal_gradient(vec2 uv) {
   vec3 normal = textureLod(relievo_normal_map, uv, 0.0).xyz;
   return -normal.xy / (max(normal.z, 1.0e-20) * normal_scale);
 }
+
+// The rise of the unit normal: 1 on level ground.
+float relievo_normal_z(vec2 uv) { return clamp(textureLod(relievo_normal_map, uv, 0.0).z, 0.0, 1.0); }

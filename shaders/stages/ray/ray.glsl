@@ -21,10 +21,12 @@ layout(std430, set = 0, binding = 2) readonly buffer Rays { PackedRay rays[]; };
 layout(std430, set = 0, binding = 3) writeonly buffer Hits { PackedHit hits[]; };
 
 float ray_n_dot_v(vec3 direction) {
-  float rise = abs(direction.z) * ray_scale;
+  precise float rise = abs(direction.z) * ray_scale;
   float longest = max(max(abs(direction.x), abs(direction.y)), rise);
   if (!(longest > 0.0)) return 1.0;
-  return rise / longest / length(vec3(direction.xy, rise) / longest);
+  precise vec3 metric = vec3(direction.xy, rise) / longest;
+  precise float size = sqrt(metric.x * metric.x + metric.y * metric.y + metric.z * metric.z);
+  return metric.z / size;
 }
 
 void main() {

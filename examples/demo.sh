@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Builds the `relievo` program and measures every technique on an asteroid and on real terrain: one page in build/demo.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root"
+
+bash tests/setup.sh
+[ -f build/release/build.ninja ] || cmake --preset release >/dev/null
+cmake --build build/release --target relievo_cli -- --quiet
+
+# The images are small because the graphics drivers may be software.
+build/release/bin/relievo report \
+  --scene examples/scenes/asteroid.toml --scene examples/scenes/jacksboro.toml \
+  --height /usr/share/glmark2/textures/asteroid-height-map.png:0.1 \
+  --height /usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz:0.1 \
+  --ray-image "${RELIEVO_RAY_IMAGE:-256}" --sweep-image 256 --repeats 2 -o build/demo "$@"

@@ -1,0 +1,155 @@
+/// relievo report: everything measured, on one page.
+#include <fmt/format.h>
+#include <unistd.h>
+#include <algorithm>
+
+#include "evaluation/evaluation.hpp"
+#include "report/page.hpp"
+
+namespace relievo::cli {
+
+namespace {
+
+struct ReportOptions {
+  std::vector<std::string> techniques = {"all"}, scenes, heights, backends = {"vulkan", "opengl"}, set;
+  std::string address = "repeat", output;
+  int ray_image = 1024, sweep_image = 512, repeats = 3;
+};
+
+/// Found out before the measurements, not after.
+Status prepare_folder(const std::filesystem::path& folder) {
+  if (Status status = make_folder(folder / "pictures"); !status) return status;
+  if (access(folder.c_str(), W_OK | X_OK) == 0 && access((folder / "pictures").c_str(), W_OK | X_OK) == 0) return {};
+  return fail(ErrorCode::io, "cli.folder", fmt::format("folder '{}' is not writable", folder.string()),
+              folder.string());
+}
+
+Result<Report> measure(const EvaluationInput& input, const ReportOptions& options) {
+  Report report;
+  Result<Evaluation> evaluation = evaluate(input);
+  if (!evaluation) return tl::unexpected(evaluation.error());
+  Result<Sweep> sweep = run_sweep(input, evaluation->backends.front().name, options.sweep_image);
+  if (!sweep) return tl::unexpected(sweep.error());
+  report.evaluation = std::move(*evaluation);
+  report.sweep = std::move(*sweep);
+  if (!report.sweep.points.empty()) {
+    for (double angle : report.sweep.angles) report.plots.push_back(draw_plot(report.sweep, angle));
+  }
+  report.techniques = input.techniques;
+  report.pictures = input.pictures;
+  report.ray_image = input.ray_image;
+  report.repeats = input.repeats;
+  return report;
+}
+
+nlohmann::json json_of(const Report& report) {
+  nlohmann::json json = to_json(report.evaluation);
+  json["pictures_folder"] = "pictures";
+  json["sweep"] = to_json(report.sweep);
+  return json;
+}
+
+Status write_files(const Report& report, const nlohmann::json& json, const std::filesystem::path& folder) {
+  Result<std::string> page = make_page(report);
+  if (!page) return tl::unexpected(page.error());
+  if (Status status = write_text(folder / "report.json", json.dump(2) + "\n"); !status) return status;
+  if (Status status = write_text(folder / "rays.csv", rays_csv(report.evaluation)); !status) return status;
+  return write_text(folder / "index.html", *page);
+}
+
+/// A line a technique, on the first height map and backend with the exact filter: wrong hits at every angle, cost at
+/// 20°.
+void print_techniques(const Report& report) {
+  constexpr double shown_angle = 20;
+  const std::vector<RayRow>& rows = report.evaluation.rays;
+  if (rows.empty()) return;
+  const std::string& map = rows.front().case_name;
+  const std::string& backend = report.evaluation.backends.front().name;
+  auto find = [&](const std::string& technique, double angle) {
+    return std::find_if(rows.begin(), rows.end(), [&](const RayRow& r) {
+      return r.case_name == map && r.backend == backend && r.filter == "exact" && r.technique == technique &&
+             r.angle == angle;
+    });
+  };
+  fmt::print("\n{} on {}, filter exact, at {}°\n", map, backend, shown_angle);
+  fmt::print("{:<20} {:>9} {:>9} {:>10} {:>8} {:>8} {:>9} {:>8}\n", "technique", "wrong %", "missed %", "p99 texel",
+             "steps", "fetches", "Mrays/s", "x relief");
+  for (const std::string& technique : report.techniques) {
+    auto row = find(technique, shown_angle);
+    if (row == rows.end()) continue;
+    const ErrorFigures& e = row->error;
+    double ratio = ratio_to_relief(report.evaluation, *row);
+    fmt::print("{:<20} {:>9.3f} {:>9.3f} {:>10.4f} {:>8.1f} {:>8.1f} {:>9} {:>8}\n", technique, e.wrong_percent(),
+               e.percent(e.missed), e.uv_texels.p99, e.mean_steps, e.mean_fetches,
+               row->seconds > 0 ? fmt::format("{:.2f}", static_cast<double>(e.rays) / row->seconds / 1e6) : "-",
+               ratio > 0 ? fmt::format("{:.2f}", ratio) : "-");
+  }
+}
+
+void print(const Report& report, const std::filesystem::path& folder) {
+  for (const NotRun& n : report.evaluation.not_run) fmt::print("not run: {}, because {}\n", n.what, n.reason);
+  for (const Check& c : report.evaluation.checks)
+    fmt::print("{} {}: {}; expected {}\n", c.passed ? "pass" : "FAIL", c.name, c.found, c.expected);
+  print_techniques(report);
+  fmt::print("\n{}\n", (folder / "index.html").string());
+}
+
+Status run_report(const Context& context, const ReportOptions& options) {
+  Result<Registry> registry = context.registry();
+  if (!registry) return tl::unexpected(registry.error());
+  if (options.scenes.empty() && options.heights.empty()) {
+    return fail(ErrorCode::usage, "report.nothing", "nothing to report on; expected --scene FILE or --height FILE");
+  }
+  Result<EvaluationInput> input =
+      make_input(*registry, options.techniques, options.scenes, options.heights, options.address, options.set);
+  if (!input) return tl::unexpected(input.error());
+  std::filesystem::path folder = options.output;
+  if (Status status = prepare_folder(folder); !status) return status;
+  input->backends = options.backends;
+  input->ray_image = options.ray_image;
+  input->repeats = options.repeats;
+  input->pictures = folder / "pictures";
+  Result<Report> report = measure(*input, options);
+  if (!report) return tl::unexpected(report.error());
+  nlohmann::json json = json_of(*report);
+  if (Status status = write_files(*report, json, folder); !status) return status;
+  if (context.json) {
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    print(*report, folder);
+  }
+  const std::vector<Check>& checks = report->evaluation.checks;
+  auto failed = std::count_if(checks.begin(), checks.end(), [](const Check& c) { return !c.passed; });
+  if (failed > 0)
+    return fail(ErrorCode::mismatch, "report.failed", fmt::format("{} of {} checks fail", failed, checks.size()));
+  return {};
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Context& context) {
+  auto options = std::make_shared<ReportOptions>();
+  CLI::App* command = add_command(app, context, "report", "Measure everything and show it on one page",
+                                  [&context, options] { return run_report(context, *options); });
+  command->add_option("--techniques", options->techniques, "a,b,… or all")->capture_default_str();
+  command->add_option("--scene", options->scenes, "Scene files: pictures of every drawing stage");
+  command->add_option(
+      "--height", options->heights,
+      "Height files, each with an optional :scale: rays at 60°, 20° and 8°; step counts are varied on the first");
+  command->add_option("--address", options->address, "Of the height files")->capture_default_str();
+  command->add_option("--backends", options->backends)->delimiter(',')->capture_default_str();
+  command->add_option("--ray-image", options->ray_image, "Rays a side of the ray image")
+      ->check(CLI::Range(1, 8192))
+      ->capture_default_str();
+  command->add_option("--sweep-image", options->sweep_image, "The same where step counts are varied")
+      ->check(CLI::Range(1, 2048))
+      ->capture_default_str();
+  command->add_option("--repeats", options->repeats, "Timed runs, and runs that must be byte-identical")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command->add_option("--set", options->set, "technique.parameter=value");
+  command->add_option("-o,--output", options->output, "Folder for index.html, report.json, rays.csv and pictures/")
+      ->required();
+}
+
+}  // namespace relievo::cli

@@ -1,0 +1,38 @@
+/// The page of `relievo report`: one HTML file that needs nothing beside itself.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "report/plot.hpp"
+#include "report/sweep.hpp"
+
+namespace relievo::cli {
+
+struct Report {
+  Evaluation evaluation;
+  Sweep sweep;
+  std::vector<Plot> plots;
+  std::vector<std::string> techniques;
+  std::filesystem::path pictures;  ///< folder of Evaluation::pictures
+  int ray_image = 0, repeats = 0;
+};
+
+/// The whole page. Errors: "report.picture" for a picture that cannot be read back.
+Result<std::string> make_page(const Report& report);
+
+/// Its parts, in order. Each is a <section>, or empty when there is nothing to show.
+std::string checks_section(const Report& report);
+std::string machines_section(const Report& report);
+Result<std::string> gallery_section(const Report& report);
+std::string rays_section(const Report& report);
+std::string speed_section(const Report& report);
+
+/// The row's time over that of relief mapping with the same rays, filter and backend; −1 when there is none.
+double ratio_to_relief(const Evaluation& evaluation, const RayRow& row);
+
+/// Every ray row with all its figures, one line each after a header.
+std::string rays_csv(const Evaluation& evaluation);
+
+}  // namespace relievo::cli

@@ -1,0 +1,122 @@
+/// The `ray` stage's figures: a table a height map and angle, and the same as CSV.
+#include <fmt/format.h>
+#include <algorithm>
+#include <tuple>
+
+#include "report/html.hpp"
+#include "report/page.hpp"
+
+namespace relievo::cli {
+
+namespace {
+
+bool same_rays(const RayRow& a, const RayRow& b) {
+  return a.case_name == b.case_name && a.angle == b.angle;
+}
+
+const std::vector<Column>& columns() {
+  static const std::vector<Column> list = {
+      {"technique"},         {"filter"},        {"backend"},     {"wrong %", true}, {"missed %", true},
+      {"exhausted %", true}, {"Δuv p50", true}, {"p99", true},   {"max", true},     {"|ΔH|·10³ p50", true},
+      {"p99", true},         {"max", true},     {"steps", true}, {"fetches", true}, {"ms", true},
+      {"Mrays/s", true},     {"× relief", true}};
+  return list;
+}
+
+double million_rays_per_second(const RayRow& row) {
+  return row.seconds > 0 ? static_cast<double>(row.error.rays) / row.seconds / 1e6 : -1;
+}
+
+std::vector<Cell> cells(const Evaluation& evaluation, const RayRow& row) {
+  const ErrorFigures& e = row.error;
+  return {{row.technique, "name"},
+          {row.filter},
+          {row.backend},
+          {fixed(e.wrong_percent(), 3)},
+          {fixed(e.percent(e.missed), 3)},
+          {fixed(e.percent(e.exhausted), 3)},
+          {fixed(e.uv_texels.p50, 4)},
+          {fixed(e.uv_texels.p99, 4)},
+          {fixed(e.uv_texels.max, 4)},
+          {fixed(e.height.p50 * 1e3, 4)},
+          {fixed(e.height.p99 * 1e3, 4)},
+          {fixed(e.height.max * 1e3, 4)},
+          {fixed(e.mean_steps, 1)},
+          {fixed(e.mean_fetches, 1)},
+          {fixed(row.seconds * 1e3, 2)},
+          {fixed(million_rays_per_second(row), 2)},
+          {fixed(ratio_to_relief(evaluation, row), 2)}};
+}
+
+/// The rows of one height map at one angle, technique by technique.
+std::string case_html(const Evaluation& evaluation, const RayRow& first) {
+  std::vector<const RayRow*> rows;
+  for (const RayRow& row : evaluation.rays) {
+    if (same_rays(row, first)) rows.push_back(&row);
+  }
+  std::stable_sort(rows.begin(), rows.end(), [](const RayRow* a, const RayRow* b) {
+    return std::tie(a->technique, a->filter, a->backend) < std::tie(b->technique, b->filter, b->backend);
+  });
+  std::vector<std::vector<Cell>> table_rows;
+  for (const RayRow* row : rows) table_rows.push_back(cells(evaluation, *row));
+  return fmt::format(
+             "<h3>{} at {}°</h3>\n<p class=\"soft\">{} rays, of which {} pass within 10⁻⁵ of the surface without "
+             "crossing it and are not judged.</p>\n",
+             escape(first.case_name), first.angle, first.error.rays, first.error.ambiguous) +
+         table(columns(), table_rows);
+}
+
+}  // namespace
+
+double ratio_to_relief(const Evaluation& evaluation, const RayRow& row) {
+  for (const RayRow& other : evaluation.rays) {
+    bool reference = other.technique == "relief" && same_rays(other, row) && other.filter == row.filter &&
+                     other.backend == row.backend;
+    if (reference && other.seconds > 0 && row.seconds > 0) return row.seconds / other.seconds;
+  }
+  return -1;
+}
+
+std::string rays_section(const Report& report) {
+  const std::vector<RayRow>& rows = report.evaluation.rays;
+  if (rows.empty()) return {};
+  std::string html =
+      "<section><h2>Rays against the oracle</h2>\n"
+      "<p>Wrong is a hit that the oracle has not, none where it has one, or one on another layer: more than a texel or "
+      "0.02 in H away. "
+      "Δuv (texels) and |ΔH| (thousandths of the relief's height) are over the other hits. The hardware filter has 8 "
+      "fractional bits; "
+      "the exact one interpolates in float. Steps and fetches are means a ray.</p>\n";
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    bool seen = std::any_of(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(i),
+                            [&](const RayRow& r) { return same_rays(r, rows[i]); });
+    if (!seen) html += case_html(report.evaluation, rows[i]);
+  }
+  return html + "</section>\n";
+}
+
+std::string rays_csv(const Evaluation& evaluation) {
+  std::string text =
+      "case,angle,technique,filter,backend,rays,ambiguous,judged,wrong_percent,missed_percent,false_hit_percent,wrong_"
+      "layer_percent,exhausted_percent,"
+      "uv_texels_p50,uv_texels_p99,uv_texels_max,height_p50,height_p99,height_max,steps,fetches,seconds,ratio\n";
+  for (const RayRow& r : evaluation.rays) {
+    const ErrorFigures& e = r.error;
+    std::string name = r.case_name;
+    if (name.find_first_of(",\"\n\r") != std::string::npos) {
+      for (std::size_t at = name.find('"'); at != std::string::npos; at = name.find('"', at + 2)) name.insert(at, "\"");
+      name = '"' + name + '"';
+    }
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", name, r.angle, r.technique,
+                        r.filter, r.backend, e.rays, e.ambiguous, e.judged, e.wrong_percent(), e.percent(e.missed),
+                        e.percent(e.false_hit), e.percent(e.wrong_layer), e.percent(e.exhausted), e.uv_texels.p50,
+                        e.uv_texels.p99, e.uv_texels.max, e.height.p50, e.height.p99, e.height.max, e.mean_steps,
+                        e.mean_fetches);
+    double ratio = ratio_to_relief(evaluation, r);
+    text += r.seconds >= 0 ? fmt::format(",{}", r.seconds) : ",";
+    text += ratio >= 0 ? fmt::format(",{}\n", ratio) : ",\n";
+  }
+  return text;
+}
+
+}  // namespace relievo::cli

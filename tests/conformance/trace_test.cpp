@@ -1,0 +1,309 @@
+/// `trace` on both backends: against the oracle, against each other, and on the rays that break ray tracers.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "support/linear_claims.hpp"
+#include "support/pipeline.hpp"
+
+namespace relievo::test {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// So many that a step over three map widths is under a quarter of a texel on the widest of the small maps (33).
+constexpr int fine_steps = 512;
+
+TraceRequest fine_search() {
+  return request_of("linear_search", {{"linear_search.steps", fine_steps}});
+}
+
+/// All small maps with repeat, and some with every other address mode.
+std::vector<NamedMap> map_cases() {
+  std::vector<NamedMap> cases = small_maps();
+  for (const NamedMap& base : small_maps()) {
+    if (base.name != "7x13" && base.name != "1x9" && base.name != "plateau" && base.name != "smooth noise") continue;
+    for (AddressMode mode : {AddressMode::mirror, AddressMode::clamp, AddressMode::clip})
+      cases.push_back({base.name + " " + std::string(to_string(mode)), with_address(base.map, mode)});
+  }
+  return cases;
+}
+
+void expect_finite(const std::vector<Hit>& hits) {
+  for (const Hit& hit : hits) {
+    ASSERT_TRUE(std::isfinite(hit.t) && std::isfinite(hit.u) && std::isfinite(hit.v) && std::isfinite(hit.h))
+        << describe(hit);
+  }
+}
+
+/// Equal, or within 1e-5: both drivers run the same SPIR-V or what was made of it, in float.
+bool agree(const Hit& a, const Hit& b) {
+  const auto near = [](double x, double y) { return std::abs(x - y) <= 1e-5 * std::max({1.0, std::abs(x), std::abs(y)}); };
+  return a.status == b.status && near(a.t, b.t) && near(a.u, b.u) && near(a.v, b.v) && near(a.h, b.h);
+}
+
+/// Hits of one ray on Vulkan and OpenGL; the two must agree.
+Hit trace_one(const HeightMap& map, const Ray& ray, const TraceRequest& request = fine_search()) {
+  const Hit vulkan = trace_on("vulkan", map, {ray}, request)[0], opengl = trace_on("opengl", map, {ray}, request)[0];
+  EXPECT_TRUE(agree(vulkan, opengl)) << describe(ray) << ": " << describe(vulkan) << " and " << describe(opengl);
+  return vulkan;
+}
+
+TEST(Trace, AFineLinearSearchFindsEveryFirstHitThatLastsAStep) {
+  int certain = 0;
+  for (const std::string& name : both_backends) {
+    std::uint64_t seed = 1;
+    for (const auto& [title, map] : map_cases()) {
+      const std::vector<Ray> rays = bounded_rays(map, 200, seed++);
+      const std::vector<Hit> truth = Oracle(map).trace(rays), hits = trace_on(name, map, rays, fine_search());
+      expect_finite(hits);
+      const SearchVerdict verdict = judge_search(map, rays, truth, hits, fine_steps);
+      EXPECT_EQ(verdict.found, verdict.certain) << title << " on " << name << ": " << verdict.first_fault;
+      EXPECT_EQ(verdict.false_hits, 0) << title << " on " << name << ": " << verdict.first_fault;
+      certain += verdict.certain;
+    }
+  }
+  EXPECT_GT(certain, 3000) << "too few rays are judged for the figures above to mean anything";
+}
+
+TEST(Trace, TheSameJudgementCatchesSeededFaults) {
+  const HeightMap map = smooth_noise_map(33, 20);
+  const std::vector<Ray> rays = bounded_rays(map, 400, 7);
+  const std::vector<Hit> truth = Oracle(map).trace(rays);
+  HeightMap shifted = map, raised = map, lowered = map;
+  std::rotate(shifted.texels.begin(), shifted.texels.begin() + 1, shifted.texels.end());
+  for (float& t : raised.texels) t = std::min(t + 2.0f / 255.0f, 1.0f);
+  for (float& t : lowered.texels) t = std::max(t - 2.0f / 255.0f, 0.0f);
+  for (const HeightMap& faulty : {shifted, raised, lowered}) {
+    const auto hits = trace_on("vulkan", faulty, rays, fine_search());
+    const SearchVerdict verdict = judge_search(map, rays, truth, hits, fine_steps);
+    EXPECT_GT(verdict.false_hits + verdict.certain - verdict.found, 10);
+  }
+  std::vector<Hit> swapped = trace_on("vulkan", map, rays, fine_search());
+  const SearchVerdict good = judge_search(map, rays, truth, swapped, fine_steps);
+  EXPECT_EQ(good.false_hits + good.certain - good.found, 0) << good.first_fault;
+  std::rotate(swapped.begin(), swapped.begin() + 1, swapped.end());
+  const SearchVerdict verdict = judge_search(map, rays, truth, swapped, fine_steps);
+  EXPECT_GT(verdict.false_hits + verdict.certain - verdict.found, 50) << "hits in another order";
+}
+
+TEST(Trace, BothBackendsAgreeOnEveryTechnique) {
+  const HeightMap map = smooth_noise_map(33, 20);
+  const std::vector<Ray> rays = bounded_rays(map, 2000, 11);
+  const std::vector<Hit> truth = Oracle(map).trace(rays);
+  for (const std::string& technique : technique_names()) {
+    const auto vulkan = trace_on("vulkan", map, rays, request_of(technique));
+    const auto opengl = trace_on("opengl", map, rays, request_of(technique));
+    expect_finite(vulkan);
+    expect_finite(opengl);
+    std::size_t judged = 0, same = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (truth[i].ambiguous) continue;
+      ++judged;
+      same += agree(vulkan[i], opengl[i]);
+    }
+    EXPECT_GT(judged, 1500U);
+    EXPECT_EQ(same, judged) << technique;
+  }
+}
+
+TEST(Trace, ThreeRunsAreByteIdentical) {
+  const HeightMap map = white_noise_map(16, 16);
+  const std::vector<Ray> rays = bounded_rays(map, 500, 5);
+  for (const std::string& name : both_backends) {
+    for (const std::string& technique : technique_names()) {
+      MapSet maps = map_set(map);
+      const TraceRequest request = request_of(technique);
+      for (const std::string& needed : registry().techniques.at(technique).maps)
+        ASSERT_TRUE(bake_map(backend(name), registry(), needed, maps));
+      const auto job = make_trace_job(registry(), maps, rays, {&request, 1}, backend(name).info().shader_target);
+      ASSERT_TRUE(job) << format(job.error());
+      const auto first = backend(name).execute(*job);
+      ASSERT_TRUE(first) << format(first.error());
+      for (int run = 0; run < 2; ++run) {
+        const auto again = backend(name).execute(*job);
+        ASSERT_TRUE(again) << format(again.error());
+        EXPECT_EQ(again->read_backs, first->read_backs) << technique << " on " << name;
+      }
+    }
+  }
+}
+
+TEST(Trace, AVerticalRayHitsTheHeightBelowIt) {
+  const HeightMap map = white_noise_map(7, 13);
+  for (const auto& [u, v] : {std::pair(0.5, 0.5), std::pair(0.1, 0.93), std::pair(0.0, 0.0)}) {
+    const Hit hit = trace_one(map, {u, v, 1, 0, 0, -1});
+    EXPECT_EQ(hit.status, HitStatus::hit);
+    EXPECT_LE(hit.h, sample_height(map, u, v) + 1e-6);
+    EXPECT_GE(hit.h, sample_height(map, u, v) - 1.0 / fine_steps - 1e-6) << "more than a step too deep";
+    EXPECT_EQ(hit.u, u == 0.1 ? double(0.1f) : u);
+  }
+}
+
+TEST(Trace, AHorizontalRayWithinTheSlabHitsTheWall) {
+  const HeightMap map = wall_map(16, 16);  // the column 8 is 1; its ramps begin at the centres of 7 and 9
+  const Hit hit = trace_one(map, {0.25, 0.5, 0.5, 1, 0, 0, 1});
+  EXPECT_EQ(hit.status, HitStatus::hit);
+  EXPECT_NEAR(hit.u, 0.5, 1.0 / fine_steps + 1e-6);
+  EXPECT_NEAR(hit.h, 0.5, 1e-6);
+}
+
+TEST(Trace, AHorizontalRayWithoutEndThatMeetsNothingIsExhaustedAndNoHit) {
+  const Hit hit = trace_one(constant_map(8, 8, 0.25), {0.25, 0.5, 0.5, 1, 0, 0});
+  EXPECT_EQ(hit.status, HitStatus::exhausted);
+  EXPECT_TRUE(std::isfinite(hit.t) && std::isfinite(hit.u));
+}
+
+TEST(Trace, ARayAboveTheLidEntersThere) {
+  const HeightMap map = constant_map(8, 8, 0.5);
+  const Hit hit = trace_one(map, {0.25, 0.25, 3, 0.125, 0, -1});
+  EXPECT_EQ(hit.status, HitStatus::hit);
+  EXPECT_NEAR(hit.t, 2.5, 1.0 / fine_steps);
+  EXPECT_NEAR(hit.u, 0.25 + 2.5 / 8, 1.0 / fine_steps);
+  EXPECT_EQ(trace_one(map, {0.25, 0.25, 3, 0.125, 0, 1}).status, HitStatus::miss) << "rises away";
+  EXPECT_EQ(trace_one(map, {0.25, 0.25, 3, 0.125, 0, 0}).status, HitStatus::miss) << "never comes down";
+  EXPECT_EQ(trace_one(map, {0.25, 0.25, 3, 0.125, 0, -1, 1.5}).status, HitStatus::miss) << "ends above the lid";
+}
+
+TEST(Trace, APlateauAtTheLidIsTouched) {
+  const HeightMap map = constant_map(8, 8, 1);
+  for (const double height : {1.0, 1.7}) {
+    for (const char* technique : {"linear_search", "relief", "parallax_occlusion"}) {
+      const Hit hit = trace_one(map, {0.3, 0.6, height, 0.7, 0.1, -1}, request_of(technique));
+      EXPECT_EQ(hit.status, HitStatus::hit) << technique;
+      EXPECT_NEAR(hit.h, 1, 1e-6) << technique;
+      EXPECT_NEAR(hit.t, height - 1, 1e-6) << technique;
+    }
+  }
+}
+
+TEST(Trace, AFlatBaseIsHitAtTheBase) {
+  for (const std::string& technique : technique_names()) {
+    const Hit hit = trace_one(constant_map(5, 3, 0), {0.3, 0.6, 1, 0.7, -0.3, -1}, request_of(technique));
+    EXPECT_EQ(hit.status, HitStatus::hit) << technique;
+    EXPECT_NEAR(hit.t, 1, 0.01) << technique;
+    EXPECT_NEAR(hit.h, 0, 0.01) << technique;
+  }
+}
+
+TEST(Trace, ARayThatStartsBelowTheSurfaceIsInsideAtZero) {
+  const Hit hit = trace_one(constant_map(8, 8, 0.5), {0.3, 0.6, 0.25, 1, 0, -1});
+  EXPECT_EQ(hit.status, HitStatus::inside);
+  EXPECT_EQ(hit.t, 0);
+  EXPECT_EQ(trace_one(constant_map(8, 8, 0.5), {0.3, 0.6, -0.25, 1, 0, -1}).status, HitStatus::inside) << "under the base";
+}
+
+TEST(Trace, AClipMapEndsAtItsDomain) {
+  const HeightMap map = with_address(constant_map(8, 8, 0.25), AddressMode::clip);
+  EXPECT_EQ(trace_one(map, {0.5, 0.5, 1, 1, 0, -0.5}).status, HitStatus::outside) << "leaves at u = 1, H = 3/4";
+  EXPECT_EQ(trace_one(map, {1.5, 0.5, 1, 1, 0, -0.5}).status, HitStatus::outside) << "never enters";
+  EXPECT_EQ(trace_one(map, {1.5, 0.5, 1, 0, 0, -1}).status, HitStatus::outside) << "falls beside it";
+  const Hit edge = trace_one(map, {-0.5, 0.5, 0.5, 1, 0, -0.75});
+  EXPECT_EQ(edge.status, HitStatus::hit) << "enters below the surface: its side";
+  EXPECT_NEAR(edge.t, 0.5, 1e-6);
+}
+
+TEST(Trace, ALimitBeforeTheHitIsAMissAndOneBehindItIsNot) {
+  const HeightMap map = constant_map(8, 8, 0.5);
+  Ray ray{0.25, 0.25, 1, 0.5, 0, -1};
+  ray.t_max = 0.49;
+  const Hit before = trace_one(map, ray);
+  EXPECT_EQ(before.status, HitStatus::miss);
+  EXPECT_LE(before.t, 0.49 + 1e-6);
+  ray.t_max = 0.51;
+  EXPECT_EQ(trace_one(map, ray).status, HitStatus::hit);
+  ray.t_max = 0;
+  EXPECT_EQ(trace_one(map, ray).status, HitStatus::miss);
+}
+
+TEST(Trace, WholeTilesOfTheTextureCoordinateChangeNothing) {
+  for (const AddressMode mode : {AddressMode::repeat, AddressMode::mirror}) {
+    const HeightMap map = with_address(white_noise_map(7, 13), mode);
+    std::vector<Ray> near, far;
+    Random random(3);
+    for (int i = 0; i < 300; ++i) {
+      // Dyadic coordinates, so that adding the tiles is exact.
+      near.push_back({random.below(1024) / 1024.0, random.below(1024) / 1024.0, 1, random.uniform(-1, 1),
+                      random.uniform(-1, 1), -0.5});
+      far.push_back(near.back());
+      far.back().u += 1e6;
+      far.back().v -= 2e6;
+    }
+    for (const std::string& name : both_backends) {
+      const auto a = trace_on(name, map, near, fine_search()), b = trace_on(name, map, far, fine_search());
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        EXPECT_EQ(a[i].status, b[i].status) << describe(near[i]);
+        EXPECT_EQ(a[i].t, b[i].t) << describe(near[i]);
+        EXPECT_NEAR(a[i].u, b[i].u - 1e6, 1e-9) << describe(near[i]);
+        EXPECT_NEAR(a[i].v, b[i].v + 2e6, 1e-9) << describe(near[i]);
+      }
+    }
+  }
+}
+
+TEST(Trace, RaysThatAreNoRaysMissWithFiniteNumbers) {
+  std::vector<Ray> rays;
+  for (const double bad : {not_a_number, infinity, -infinity}) {
+    for (int field = 0; field < 6; ++field) {
+      Ray ray{0.25, 0.25, 1, 0.5, 0.25, -1};
+      double* fields[] = {&ray.u, &ray.v, &ray.h, &ray.du, &ray.dv, &ray.dh};
+      *fields[field] = bad;
+      rays.push_back(ray);
+    }
+  }
+  rays.push_back({0.25, 0.25, 1, 0, 0, 0});
+  rays.push_back({0.25, 0.25, 1, 0.5, 0, -1, not_a_number});
+  rays.push_back({0.25, 0.25, 1, 0.5, 0, -1, -1});
+  for (const AddressMode mode : {AddressMode::mirror, AddressMode::clip}) {
+    const HeightMap map = with_address(white_noise_map(7, 13), mode);
+    for (const std::string& name : both_backends) {
+      for (const std::string& technique : technique_names()) {
+        const auto hits = trace_on(name, map, rays, request_of(technique));
+        expect_finite(hits);
+        for (std::size_t i = 0; i < hits.size(); ++i)
+          EXPECT_FALSE(is_hit(hits[i])) << technique << " " << describe(rays[i]) << " " << describe(hits[i]);
+      }
+    }
+  }
+}
+
+TEST(Trace, ExtremeRaysGiveFiniteNumbers) {
+  std::vector<Ray> rays;
+  for (const double size : {1e-300, 1e-40, 1e-20, 1e20, 1e37, 1e300}) {
+    rays.push_back({0.25, 0.25, 1, size, size, -size});
+    rays.push_back({0.25, 0.25, 1, size, 0, -1});
+    rays.push_back({0.25, 0.25, 1, 1, 0, -size});
+    rays.push_back({0.25, 0.25, 1 + size, 1, 0.5, -1});
+    rays.push_back({0.25 + size, 0.25 - size, 1, 1, 0.5, -1});
+  }
+  for (const std::string& name : both_backends) {
+    for (const std::string& technique : technique_names()) {
+      const TraceRequest exact = request_of(technique), hardware = request_of(technique, {}, HeightFilter::hardware);
+      expect_finite(trace_on(name, with_address(white_noise_map(7, 13), AddressMode::repeat), rays, exact));
+      expect_finite(trace_on(name, with_address(white_noise_map(7, 13), AddressMode::clip), rays, hardware));
+    }
+  }
+}
+
+TEST(Trace, HardwareFilteringDiffersByWhatEightFractionalBitsCost) {
+  const HeightMap map = smooth_noise_map(32, 32);
+  const std::vector<Ray> rays = make_view_rays(60, 0.1, 64, 64);
+  const std::vector<Hit> truth = Oracle(map).trace(rays);
+  for (const std::string& name : both_backends) {
+    const auto figures = [&](HeightFilter filter) {
+      return compare_hits(truth, trace_on(name, map, rays, request_of("relief", {{"relief.binary_steps", 20}}, filter)),
+                          map.width, map.height);
+    };
+    const ErrorFigures exact = figures(HeightFilter::exact), hardware = figures(HeightFilter::hardware);
+    EXPECT_EQ(exact.wrong_percent(), 0) << name;
+    EXPECT_EQ(exact.non_finite, 0U) << name;
+    // Bisection ends at an ulp of t, about 1e-7, and float interpolation adds a few more.
+    EXPECT_LT(exact.height.max, 2e-6) << name;
+    // A weight that is off by 2^-9 moves the height by that share of a texel's rise, here at most about 1/4.
+    EXPECT_LT(hardware.height.max, 0.25 / 512 * 4) << name;
+  }
+}
+
+}  // namespace
+}  // namespace relievo::test

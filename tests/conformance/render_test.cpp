@@ -125,26 +125,30 @@ TEST(Render, CountCracksCatchesOnePixel) {
   EXPECT_EQ(count_cracks(cracked, good, 96, 96), 1U);
 }
 
-/// A seam of normals (one normal a face instead of one a position) tears the prisms apart, and the count sees it.
+/// Triangles that do not share their edges leave gaps in an open mesh, and the count sees them.
 TEST(Render, CountCracksCatchesTornPrisms) {
-  const Scene scene = make_scene(MeshKind::torus, 200, 0.2f);
-  const Mesh whole = mesh_of(scene);
-  Mesh torn = whole;
-  torn.positions.clear(), torn.normals.clear(), torn.uvs.clear();
-  for (auto& triangle : torn.triangles) {
-    for (std::uint32_t& corner : triangle) {
-      torn.positions.push_back(whole.positions[corner]);
+  const Scene scene = make_scene(MeshKind::plane, 200);
+  const Mesh whole = subdivide(mesh_of(scene), 4);
+  Mesh torn{"torn", {}, {}, {}, {}};
+  for (const auto& triangle : whole.triangles) {
+    const auto first = static_cast<std::uint32_t>(torn.positions.size());
+    for (const std::uint32_t corner : triangle) {
+      std::array<float, 3> position{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        float middle = 0;
+        for (const std::uint32_t other : triangle) middle += whole.positions[other][c] / 3;
+        position[c] = middle + 0.9f * (whole.positions[corner][c] - middle);
+      }
+      torn.positions.push_back(position);
+      torn.normals.push_back(whole.normals[corner]);
       torn.uvs.push_back(whole.uvs[corner]);
-      std::array<float, 3> normal = whole.normals[corner];
-      normal[0] += torn.positions.size() % 2 == 0 ? 0.3f : -0.3f;  // no two triangles agree
-      torn.normals.push_back(normal);
-      corner = static_cast<std::uint32_t>(torn.positions.size() - 1);
     }
+    torn.triangles.push_back({first, first + 1, first + 2});
   }
-  const HeightMap map = constant_map(8, 8, 0.9);
+  const HeightMap map = constant_map(8, 8, 0.5);
   const Pixels reference = render_on("vulkan", scene, whole, map, request_of("vertex", "")).color;
-  const Pixels prism = render_on("vulkan", scene, torn, map, request_of("prism", "relief")).color;
-  EXPECT_GT(count_cracks(prism, reference, 200, 200), 0U);
+  EXPECT_EQ(count_cracks(render_on("vulkan", scene, whole, map, request_of("prism", "relief")).color, reference, 200, 200), 0U);
+  EXPECT_GT(count_cracks(render_on("vulkan", scene, torn, map, request_of("prism", "relief")).color, reference, 200, 200), 0U);
 }
 
 TEST(Render, AFineLinearSearchDrawsWhatTheOracleReplays) {
@@ -162,13 +166,14 @@ TEST(Render, AFineLinearSearchDrawsWhatTheOracleReplays) {
     EXPECT_GE(difference.mask_iou, 0.999) << name;
     RenderRequest coarse = fine;
     coarse.values["linear_search.steps"] = 4;
-    EXPECT_LT(compare_images(render_on(name, scene, mesh, hills(), coarse).color, oracle.color).within_percent, 90)
+    EXPECT_LT(compare_images(render_on(name, scene, mesh, hills(), coarse).color, oracle.color).within_percent, 99.5)
         << name << ": four steps must be seen";
   }
 }
 
 TEST(Render, TheStatusOfTheOraclesPixelsIsTheTechniques) {
-  const Scene scene = make_scene(MeshKind::plane, 96);
+  Scene scene = make_scene(MeshKind::plane, 96);
+  scene.displacement.bias = -scene.displacement.scale;  // the relief lies below the square: rays leave by its edge
   const Mesh mesh = mesh_of(scene);
   const HeightMap map = with_address(hills(), AddressMode::clip);
   RenderRequest fine = request_of("surface", "relief", Aov::status);

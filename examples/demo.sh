@@ -13,4 +13,4 @@ build/release/bin/relievo report \
   --scene examples/scenes/asteroid.toml --scene examples/scenes/jacksboro.toml \
   --height /usr/share/glmark2/textures/asteroid-height-map.png:0.1 \
   --height /usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz:0.1 \
-  --ray-image "${RELIEVO_RAY_IMAGE:-256}" --sweep-image 256 --repeats 2 -o build/demo "$@"
+  --ray-image "${RELIEVO_RAY_IMAGE:-256}" --sweep-image 128 --repeats 2 -o build/demo "$@"

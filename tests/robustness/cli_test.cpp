@@ -181,9 +181,9 @@ TEST_F(Cli, MissingDriversAreUnsupportedAndNamed) {
 
 TEST_F(Cli, ScenesAndMeshesThatAreNone) {
   folder_.write("no_uv.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  folder_.write("no_uv.toml", "[mesh]\npath = \"no_uv.obj\"\n");
+  folder_.write("no_uv.toml", "[mesh]\nkind = \"file\"\npath = \"no_uv.obj\"\n");
   folder_.write("bad.toml", "[camera]\npositon = [0, 0, 1]\n");
-  folder_.write("lost.toml", "[mesh]\npath = \"lost.obj\"\n");
+  folder_.write("lost.toml", "[mesh]\nkind = \"file\"\npath = \"lost.obj\"\n");
   folder_.write("broken.toml", "[camera\n");
   const auto render = [&](const std::string& scene) {
     return std::vector<std::string>{"render", path(scene), "--technique", "relief", "-o", path("p.png")};

@@ -1,4 +1,6 @@
 /// The drawing stages as Jobs.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -35,7 +37,7 @@ SceneBlock scene_block(const Scene& scene) {
   block.displacement = {scene.displacement.scale, scene.displacement.bias, 0, 0};
   block.albedo = glm::vec4(to_vec3(scene.material.albedo), scene.material.ambient);
   block.specular = {scene.material.specular, scene.material.shininess, 0, 0};
-  std::size_t lights = std::min(scene.lights.size(), most_lights);
+  std::size_t lights = scene.lights.size();
   block.counts = {static_cast<int>(lights), 0, 0, 0};
   for (std::size_t i = 0; i < lights; ++i) {
     block.light_direction[i] = glm::vec4(glm::normalize(to_vec3(scene.lights[i].direction)), 0);
@@ -92,6 +94,11 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
   if (!stage) return tl::unexpected(stage.error());
   if ((*stage)->mesh == "none") {
     return fail(ErrorCode::usage, "render.stage", "stage '" + request.stage + "' draws nothing; expected one that has a mesh, such as 'surface'");
+  }
+  if (scene.lights.size() > most_lights) {
+    return fail(ErrorCode::usage, "render.lights",
+                fmt::format("the scene has {} lights; the drawing stages take at most {}", scene.lights.size(), most_lights),
+                scene.file);
   }
   Permutation permutation;
   permutation.stage = request.stage;

@@ -238,6 +238,25 @@ TEST_F(Cli, PrismIsRefusedForHlslWithItsFallbackNamed) {
   expect_refused({"compile", "relief", "--stage", "ray", "--target", "glsl-330"}, 3, {"glsl-330", "glsl-430"});
 }
 
+/// A technique that claims first hits and finds none draws a prism without a silhouette.
+TEST_F(Cli, ConformExitsWithFourWhenAClaimFails) {
+  write_technique("", good_glsl);
+  const std::string descriptor = TemporaryFolder::read(path("techniques/mine/technique.toml"));
+  const std::size_t claim = descriptor.find("\"never\"");
+  ASSERT_NE(claim, std::string::npos);
+  folder_.write("techniques/mine/technique.toml", std::string(descriptor).replace(claim, 7, "\"always\""));
+  folder_.write("ball.toml", "[mesh]\nkind = \"sphere\"\n[image]\nwidth = 48\nheight = 48\n");
+  const auto conform = [&](const std::string& technique) {
+    return run_relievo({"conform", "-I", path("techniques"), "--techniques", technique, "--scene", path("ball.toml"),
+                        "--repeats", "1"});
+  };
+  const ChildResult liar = conform("mine"), honest = conform("relief");
+  EXPECT_EQ(liar.exit_code, 4) << liar.out << liar.err;
+  EXPECT_NE(liar.err.find("checks fail"), std::string::npos) << liar.err;
+  EXPECT_NE(liar.out.find("FAIL prism silhouette"), std::string::npos) << liar.out;
+  EXPECT_EQ(honest.exit_code, 0) << honest.out << honest.err;
+}
+
 TEST_F(Cli, ErrorsAreJsonWhenAskedFor) {
   const ChildResult result = run_relievo(trace(path("missing.png"), path("rays.csv"), {"--json"}));
   EXPECT_EQ(result.exit_code, 1);

@@ -46,9 +46,15 @@ void to_every_target(benchmark::State& state, const char* stage) {
   state.counters["targets"] = static_cast<double>(targets.size());
 }
 
-void SurfaceToEveryTarget(benchmark::State& state) { to_every_target(state, "surface"); }
-void RayToEveryTarget(benchmark::State& state) { to_every_target(state, "ray"); }
-void PrismToEveryTarget(benchmark::State& state) { to_every_target(state, "prism"); }
+void SurfaceToEveryTarget(benchmark::State& state) {
+  to_every_target(state, "surface");
+}
+void RayToEveryTarget(benchmark::State& state) {
+  to_every_target(state, "ray");
+}
+void PrismToEveryTarget(benchmark::State& state) {
+  to_every_target(state, "prism");
+}
 
 void ComposeSurface(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(compose(registry(), relief_in("surface"))->shaders.data());

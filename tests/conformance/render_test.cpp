@@ -25,7 +25,9 @@ std::vector<std::pair<std::string, std::string>> drawing_cases() {
   return {{"surface", "relief"}, {"vertex", ""}, {"prism", "relief"}};
 }
 
-HeightMap hills() { return smooth_noise_map(48, 32); }
+HeightMap hills() {
+  return smooth_noise_map(48, 32);
+}
 
 std::size_t drawn(const Pixels& pixels) {
   std::size_t count = 0;
@@ -35,7 +37,9 @@ std::size_t drawn(const Pixels& pixels) {
 
 /// The rule for pictures of two backends: within 1/255 on 99.9 % of the pixels. The rest are edges, where two compilers
 /// may round a coordinate to either side of a triangle.
-bool pictures_agree(const Pixels& a, const Pixels& b) { return compare_images(a, b).within_percent >= 99.9; }
+bool pictures_agree(const Pixels& a, const Pixels& b) {
+  return compare_images(a, b).within_percent >= 99.9;
+}
 
 void expect_finite(const RenderResult& result, const std::string& what) {
   for (const float value : result.image.pixels) ASSERT_TRUE(std::isfinite(value)) << what;
@@ -147,8 +151,12 @@ TEST(Render, CountCracksCatchesTornPrisms) {
   }
   const HeightMap map = constant_map(8, 8, 0.5);
   const Pixels reference = render_on("vulkan", scene, whole, map, request_of("vertex", "")).color;
-  EXPECT_EQ(count_cracks(render_on("vulkan", scene, whole, map, request_of("prism", "relief")).color, reference, 200, 200), 0U);
-  EXPECT_GT(count_cracks(render_on("vulkan", scene, torn, map, request_of("prism", "relief")).color, reference, 200, 200), 0U);
+  EXPECT_EQ(
+      count_cracks(render_on("vulkan", scene, whole, map, request_of("prism", "relief")).color, reference, 200, 200),
+      0U);
+  EXPECT_GT(
+      count_cracks(render_on("vulkan", scene, torn, map, request_of("prism", "relief")).color, reference, 200, 200),
+      0U);
 }
 
 TEST(Render, AFineLinearSearchDrawsWhatTheOracleReplays) {
@@ -183,7 +191,8 @@ TEST(Render, TheStatusOfTheOraclesPixelsIsTheTechniques) {
   std::size_t same = 0, pixels = searched.image.pixels.size() / 4, outside = 0;
   for (std::size_t i = 0; i < pixels; ++i) {
     same += searched.image.pixels[4 * i] == oracle.image.pixels[4 * i];
-    outside += oracle.image.pixels[4 * i + 3] > 0 && oracle.image.pixels[4 * i] == static_cast<float>(HitStatus::outside);
+    outside +=
+        oracle.image.pixels[4 * i + 3] > 0 && oracle.image.pixels[4 * i] == static_cast<float>(HitStatus::outside);
   }
   EXPECT_GE(static_cast<double>(same), 0.999 * static_cast<double>(pixels));
   EXPECT_GT(outside, 0U) << "no ray leaves the clip map: the case shows nothing";
@@ -206,8 +215,8 @@ Mesh awkward_mesh() {
     mesh.normals.insert(mesh.normals.end(), 3, {0, 0, 1});
     mesh.triangles.push_back({first, first + 1, first + 2});
   };
-  add({{{0, 0, 0.3f}, {0.5f, 0, 0.3f}, {1, 0, 0.3f}}}, {{{0, 0}, {0.5f, 0}, {1, 0}}});              // no area
-  add({{{0, 0, 0.3f}, {0, 0, 0.3f}, {0, 0, 0.3f}}}, {{{0, 0}, {1, 0}, {0, 1}}});                    // a point
+  add({{{0, 0, 0.3f}, {0.5f, 0, 0.3f}, {1, 0, 0.3f}}}, {{{0, 0}, {0.5f, 0}, {1, 0}}});  // no area
+  add({{{0, 0, 0.3f}, {0, 0, 0.3f}, {0, 0, 0.3f}}}, {{{0, 0}, {1, 0}, {0, 1}}});        // a point
   add({{{-1, -1, 0.2f}, {-0.5f, -1, 0.2f}, {-1, -0.5f, 0.2f}}}, {{{0.3f, 0.3f}, {0.3f, 0.3f}, {0.3f, 0.3f}}});
   add({{{0.5f, 0.5f, 0.2f}, {1, 0.5f, 0.2f}, {0.5f, 1, 0.2f}}}, {{{1, 0}, {0, 0}, {1, 1}}});        // mirrored
   add({{{-1, 0.5f, 0.2f}, {-0.5f, 0.5f, 0.2f}, {-1, 1, 0.2f}}}, {{{0, 0}, {1, 0.9f}, {0.8f, 1}}});  // sheared
@@ -276,7 +285,8 @@ TEST(Render, DegenerateTrianglesAreCountedAndDrawnUndisplaced) {
   const Scene scene = make_scene(MeshKind::plane, 64);
   const auto result = render_on("vulkan", scene, awkward_mesh(), hills(), request_of("surface", "relief"));
   EXPECT_EQ(result.degenerate_triangles, 3U);
-  EXPECT_EQ(render_on("vulkan", scene, make_plane(), hills(), request_of("surface", "relief")).degenerate_triangles, 0U);
+  EXPECT_EQ(render_on("vulkan", scene, make_plane(), hills(), request_of("surface", "relief")).degenerate_triangles,
+            0U);
 }
 
 TEST(Render, DepthIsThatOfTheDisplacedMesh) {

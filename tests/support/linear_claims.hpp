@@ -26,7 +26,7 @@ inline double clearance_at(const HeightMap& map, const Ray& ray, double t) {
 
 /// One ray of a linear search against the oracle's hit.
 struct LinearClaim {
-  bool certain = false;          ///< the search must hit, within [earliest, latest]
+  bool certain = false;             ///< the search must hit, within [earliest, latest]
   double earliest = 0, latest = 0;  ///< t
 };
 
@@ -38,9 +38,7 @@ inline LinearClaim linear_claim(const HeightMap& map, const Ray& ray, const Hit&
   claim.earliest = truth.t;
   for (int i = 1; i <= 64 * samples && clearance_at(map, ray, claim.earliest) <= float_clearance; ++i)
     claim.earliest = std::max(0.0, truth.t - step * i / samples);
-  const auto below = [&](double t) {
-    return t >= exit ? reaches_base : clearance_at(map, ray, t) <= -float_clearance;
-  };
+  const auto below = [&](double t) { return t >= exit ? reaches_base : clearance_at(map, ray, t) <= -float_clearance; };
   double start = truth.t;
   while (!below(start) && start < exit && start < truth.t + 8 * step) start += step / samples;
   claim.certain = true;

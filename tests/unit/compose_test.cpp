@@ -67,20 +67,20 @@ TEST(ComposeIncludes, NothingOutsideTheFolderIsReached) {
     EXPECT_EQ(error.file, "techniques/mine/mine.glsl") << name;
     EXPECT_EQ(error.line, 3) << name;
   }
-  const Error escape = compose_error(with_technique(std::string(trace_function) + "#include \"../relief/relief.glsl\"\n"),
-                                     ray_of("mine"));
+  const Error escape = compose_error(
+      with_technique(std::string(trace_function) + "#include \"../relief/relief.glsl\"\n"), ray_of("mine"));
   EXPECT_EQ(escape.id, "compose.include-escapes");
 }
 
 TEST(ComposeIncludes, AFileThatIncludesItselfIsNamedWithTheWholeCycle) {
-  const Error self = compose_error(with_technique(std::string(trace_function) + "#include \"mine.glsl\"\n"), ray_of("mine"));
+  const Error self =
+      compose_error(with_technique(std::string(trace_function) + "#include \"mine.glsl\"\n"), ray_of("mine"));
   EXPECT_EQ(self.id, "compose.include-cycle");
   EXPECT_EQ(self.line, 3);
-  const Error cycle =
-      compose_error(with_technique(std::string(trace_function) + "#include \"a.glsl\"\n",
-                                   {{"techniques/mine/a.glsl", "\n#include \"b.glsl\"\n"},
-                                    {"techniques/mine/b.glsl", "\n\n#include \"a.glsl\"\n"}}),
-                    ray_of("mine"));
+  const Error cycle = compose_error(with_technique(std::string(trace_function) + "#include \"a.glsl\"\n",
+                                                   {{"techniques/mine/a.glsl", "\n#include \"b.glsl\"\n"},
+                                                    {"techniques/mine/b.glsl", "\n\n#include \"a.glsl\"\n"}}),
+                                    ray_of("mine"));
   EXPECT_EQ(cycle.id, "compose.include-cycle");
   EXPECT_EQ(cycle.file, "techniques/mine/b.glsl");
   EXPECT_EQ(cycle.line, 3);
@@ -91,9 +91,9 @@ TEST(ComposeIncludes, AFileThatIncludesItselfIsNamedWithTheWholeCycle) {
 
 TEST(ComposeIncludes, AFileIsIncludedOnce) {
   const std::string helper = "float mine_helper() { return 1.0; }\n";
-  const Registry from = with_technique("#include \"helper.glsl\"\n#include \"other.glsl\"\n" + std::string(trace_function),
-                                       {{"techniques/mine/helper.glsl", helper},
-                                        {"techniques/mine/other.glsl", "#include \"helper.glsl\"\n"}});
+  const Registry from = with_technique(
+      "#include \"helper.glsl\"\n#include \"other.glsl\"\n" + std::string(trace_function),
+      {{"techniques/mine/helper.glsl", helper}, {"techniques/mine/other.glsl", "#include \"helper.glsl\"\n"}});
   const auto composed = compose(from, ray_of("mine"));
   ASSERT_TRUE(composed) << format(composed.error());
   EXPECT_EQ(count(composed->shaders[0].text, "float mine_helper()"), 1U);
@@ -106,10 +106,10 @@ TEST(ComposeIncludes, AFileIsIncludedOnce) {
 
 /// `fault` at `line` of the technique's second included file, and what compile() says of it.
 Error compile_error(const std::string& second, const std::string& main_tail = {}) {
-  const Registry from = with_technique(
-      "#include \"first.glsl\"\n#include \"second.glsl\"\n" + std::string(trace_function) + main_tail,
-      {{"techniques/mine/first.glsl", "// one line\nfloat mine_first() { return 1.0; }\n"},
-       {"techniques/mine/second.glsl", second}});
+  const Registry from =
+      with_technique("#include \"first.glsl\"\n#include \"second.glsl\"\n" + std::string(trace_function) + main_tail,
+                     {{"techniques/mine/first.glsl", "// one line\nfloat mine_first() { return 1.0; }\n"},
+                      {"techniques/mine/second.glsl", second}});
   const auto composed = compose(from, ray_of("mine"));
   EXPECT_TRUE(composed) << (composed ? "" : format(composed.error()));
   if (!composed) return {};
@@ -124,7 +124,8 @@ TEST(ComposeIncludes, ErrorsNameTheAuthorsFileAndLineThroughIncludes) {
   EXPECT_EQ(second.file, "techniques/mine/second.glsl");
   EXPECT_EQ(second.line, 3);
   EXPECT_NE(second.message.find("missing_name"), std::string::npos) << second.message;
-  const Error after = compile_error("float mine_second() { return 1.0; }\n", "\nfloat mine_late() { return absent; }\n");
+  const Error after =
+      compile_error("float mine_second() { return 1.0; }\n", "\nfloat mine_late() { return absent; }\n");
   EXPECT_EQ(after.file, "techniques/mine/mine.glsl");
   EXPECT_EQ(after.line, 6) << "lines are counted on after an include";
   const Error syntax = compile_error("float mine_second() { return 1.0 }\n");
@@ -133,14 +134,16 @@ TEST(ComposeIncludes, ErrorsNameTheAuthorsFileAndLineThroughIncludes) {
 }
 
 TEST(ComposeIncludes, AFileWithoutALastNewlineEndsWhereItEnds) {
-  const Error error = compile_error("float mine_second() { return 1.0; }  // no newline",
-                                    "float mine_late() { return absent; }");
+  const Error error =
+      compile_error("float mine_second() { return 1.0; }  // no newline", "float mine_late() { return absent; }");
   EXPECT_EQ(error.file, "techniques/mine/mine.glsl");
   EXPECT_EQ(error.line, 5);
 }
 
 TEST(ComposeParameters, AllBindingTimesGiveTheSameHits) {
-  const HeightMap map{4, 4, {0.1f, 0.9f, 0.3f, 0.5f, 0.2f, 0.8f, 0.6f, 0.4f, 0.7f, 0.1f, 0.9f, 0.2f, 0.5f, 0.3f, 0.8f, 0.6f},
+  const HeightMap map{4,
+                      4,
+                      {0.1f, 0.9f, 0.3f, 0.5f, 0.2f, 0.8f, 0.6f, 0.4f, 0.7f, 0.1f, 0.9f, 0.2f, 0.5f, 0.3f, 0.8f, 0.6f},
                       AddressMode::repeat};
   const std::vector<Ray> rays = make_view_rays(40, 0.2, 16, 16);
   std::vector<std::vector<std::byte>> results;
@@ -151,7 +154,8 @@ TEST(ComposeParameters, AllBindingTimesGiveTheSameHits) {
     const auto prepared = prepare(registry(), permutation, "spirv");
     ASSERT_TRUE(prepared) << format(prepared.error());
     const auto& slots = prepared->composed.parameters;
-    const auto slot = std::find_if(slots.begin(), slots.end(), [](const auto& s) { return s.name == "relief.linear_steps"; });
+    const auto slot =
+        std::find_if(slots.begin(), slots.end(), [](const auto& s) { return s.name == "relief.linear_steps"; });
     ASSERT_NE(slot, slots.end());
     EXPECT_EQ(slot->value, 37);
     EXPECT_EQ(slot->offset >= 0, time == BindingTime::uniform);
@@ -197,7 +201,8 @@ TEST(ComposeParameters, AnUnknownNameIsAnsweredWithTheNearest) {
 }
 
 TEST(ComposeParameters, ValuesOutOfRangeAreRefusedWithTheRange) {
-  for (const double bad : {0.0, -1.0, 1e9, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {0.0, -1.0, 1e9, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Permutation permutation = ray_of("relief");
     permutation.values["relief.linear_steps"] = bad;
     const Error error = compose_error(registry(), permutation);

@@ -30,14 +30,14 @@ class Cli : public ::testing::Test {
 
   std::vector<std::string> trace(const std::string& height, const std::string& rays,
                                  std::vector<std::string> more = {}) const {
-    std::vector<std::string> words = {"trace", "--technique", "relief",     "--height",        height,
-                                      "--rays", rays,         "-o",         path("hits.csv")};
+    std::vector<std::string> words = {"trace",  "--technique", "relief", "--height",      height,
+                                      "--rays", rays,          "-o",     path("hits.csv")};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
   std::vector<std::string> compile_user(std::vector<std::string> more = {}) const {
-    std::vector<std::string> words = {"compile", "mine", "-I", path("techniques"), "--target", "glsl-450",
-                                      "-o",      path("compiled")};
+    std::vector<std::string> words = {"compile",  "mine",     "-I", path("techniques"),
+                                      "--target", "glsl-450", "-o", path("compiled")};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
@@ -57,7 +57,8 @@ class Cli : public ::testing::Test {
     return names;
   }
 
-  /// The program must end with `exit_code`, say all of `parts` in one sentence on stderr, and leave the folder as it was.
+  /// The program must end with `exit_code`, say all of `parts` in one sentence on stderr, and leave the folder as it
+  /// was.
   void expect_refused(const std::vector<std::string>& arguments, int exit_code, const std::vector<std::string>& parts,
                       const std::map<std::string, std::string>& variables = {}, const std::string& input = {}) const {
     std::string command;
@@ -67,7 +68,8 @@ class Cli : public ::testing::Test {
     const ChildResult result = run_relievo(arguments, variables, input);
     EXPECT_EQ(result.signal, 0) << "ended by a signal";
     EXPECT_EQ(result.exit_code, exit_code) << result.err << result.out;
-    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << part << "\n" << result.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(result.err.find(part), std::string::npos) << part << "\n" << result.err;
     EXPECT_LE(result.err.size(), 2000U) << "more than a sentence";
     EXPECT_FALSE(result.err.empty()) << "says nothing";
     EXPECT_EQ(result.out, "") << "errors go to stderr";
@@ -172,7 +174,8 @@ TEST_F(Cli, MissingDriversAreUnsupportedAndNamed) {
   const auto json = nlohmann::json::parse(list.out, nullptr, false);
   ASSERT_TRUE(json.contains("backends")) << list.out;
   int missing = 0;
-  for (const auto& entry : json["backends"]) missing += !entry["available"] && !entry["reason"].get<std::string>().empty();
+  for (const auto& entry : json["backends"])
+    missing += !entry["available"] && !entry["reason"].get<std::string>().empty();
   EXPECT_GE(missing, 2);
   const ChildResult oracle = run_relievo(trace(h, r, {"--backend", "oracle"}), neither);
   EXPECT_EQ(oracle.exit_code, 0) << oracle.err;

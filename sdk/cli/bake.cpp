@@ -1,7 +1,7 @@
 /// relievo bake: a map from a height file.
+#include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
-#include <fmt/format.h>
 
 #include "common.hpp"
 #include "relievo/image.hpp"
@@ -31,12 +31,19 @@ Status write_map(const MapData& map, const std::string& path) {
   if (extension == ".png") return write_png(path, to_image(map, true));
   if (extension == ".pfm") return write_pfm(path, to_image(map, false));
   if (extension == ".exr") return write_exr(path, to_image(map, false));
-  return fail(ErrorCode::usage, "bake.format", fmt::format("'{}' has the extension '{}'; expected .exr, .pfm or .png", path, extension), path);
+  return fail(ErrorCode::usage, "bake.format",
+              fmt::format("'{}' has the extension '{}'; expected .exr, .pfm or .png", path, extension), path);
 }
 
 Status run_bake(const Context& context, const BakeOptions& options) {
   Result<Registry> registry = context.registry();
   if (!registry) return tl::unexpected(registry.error());
+  Result<const MapDescriptor*> descriptor = registry->map(options.map);
+  if (!descriptor) return tl::unexpected(descriptor.error());
+  if ((*descriptor)->module.empty()) {
+    return fail(ErrorCode::usage, "bake.provided-map",
+                fmt::format("map '{}' is given by the caller; expected a map that is baked", options.map));
+  }
   Result<Settings> settings = parse_settings(*registry, options.set, options.map);
   if (!settings) return tl::unexpected(settings.error());
   Result<HeightMap> height = load_height(options.height, options.address);
@@ -51,9 +58,17 @@ Status run_bake(const Context& context, const BakeOptions& options) {
   if (Status status = write_map(map, options.output); !status) return status;
   std::size_t bytes = map.texels.size() * sizeof(float);
   if (context.json) {
-    fmt::print("{}\n", nlohmann::json{{"map", map.name}, {"width", map.width}, {"height", map.height}, {"channels", map.channels}, {"bytes", bytes}, {"seconds", seconds}, {"output", options.output}}.dump(2));
+    fmt::print("{}\n", nlohmann::json{{"map", map.name},
+                                      {"width", map.width},
+                                      {"height", map.height},
+                                      {"channels", map.channels},
+                                      {"bytes", bytes},
+                                      {"seconds", seconds},
+                                      {"output", options.output}}
+                           .dump(2));
   } else {
-    fmt::print("{}: {}x{}x{}, {} bytes, {:.3f} s -> {}\n", map.name, map.width, map.height, map.channels, bytes, seconds, options.output);
+    fmt::print("{}: {}x{}x{}, {} bytes, {:.3f} s -> {}\n", map.name, map.width, map.height, map.channels, bytes,
+               seconds, options.output);
   }
   return {};
 }
@@ -62,7 +77,8 @@ Status run_bake(const Context& context, const BakeOptions& options) {
 
 void add_bake(CLI::App& app, Context& context) {
   auto options = std::make_shared<BakeOptions>();
-  CLI::App* command = add_command(app, context, "bake", "Bake a map from a height map", [&context, options] { return run_bake(context, *options); });
+  CLI::App* command = add_command(app, context, "bake", "Bake a map from a height map",
+                                  [&context, options] { return run_bake(context, *options); });
   command->add_option("map", options->map, "Map to bake")->required();
   command->add_option("--height", options->height, "Height file")->required();
   command->add_option("-o,--output", options->output, ".exr or .pfm (lossless), .png")->required();

@@ -1,6 +1,6 @@
 /// relievo bench: techniques interleaved in one run, time beside cost and error.
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 #include <numeric>
 
 #include "common.hpp"
@@ -40,7 +40,8 @@ Result<std::vector<TraceRequest>> requests_of(const Registry& registry, const Be
   return requests;
 }
 
-nlohmann::json row_of(const TraceRequest& request, const TraceResult& timed, const ErrorFigures& figures, double reference) {
+nlohmann::json row_of(const TraceRequest& request, const TraceResult& timed, const ErrorFigures& figures,
+                      double reference) {
   nlohmann::json row = to_json(figures);
   double seconds = median(timed.seconds);
   row["technique"] = request.technique;
@@ -54,9 +55,14 @@ nlohmann::json row_of(const TraceRequest& request, const TraceResult& timed, con
 }
 
 void print_table(const nlohmann::json& rows) {
-  fmt::print("{:<20} {:<9} {:>9} {:>9} {:>6} {:>8} {:>8} {:>8} {:>10} {:>10}\n", "technique", "filter", "ms", "Mrays/s", "ratio", "steps", "fetches", "wrong %", "p99 texel", "p99 |dH|");
+  fmt::print("{:<20} {:<9} {:>9} {:>9} {:>6} {:>8} {:>8} {:>8} {:>10} {:>10}\n", "technique", "filter", "ms", "Mrays/s",
+             "ratio", "steps", "fetches", "wrong %", "p99 texel", "p99 |dH|");
   for (const auto& r : rows) {
-    fmt::print("{:<20} {:<9} {:>9.2f} {:>9.2f} {:>6.2f} {:>8.1f} {:>8.1f} {:>8.3f} {:>10.2e} {:>10.2e}\n", r["technique"].get<std::string>(), r["filter"].get<std::string>(), r["median_s"].get<double>() * 1e3, r["rays_per_s"].get<double>() / 1e6, r["ratio"].get<double>(), r["steps"].get<double>(), r["fetches"].get<double>(), r["wrong_percent"].get<double>(), r["uv_texels"]["p99"].get<double>(), r["height"]["p99"].get<double>());
+    fmt::print("{:<20} {:<9} {:>9.2f} {:>9.2f} {:>6.2f} {:>8.1f} {:>8.1f} {:>8.3f} {:>10.2e} {:>10.2e}\n",
+               r["technique"].get<std::string>(), r["filter"].get<std::string>(), r["median_s"].get<double>() * 1e3,
+               r["rays_per_s"].get<double>() / 1e6, r["ratio"].get<double>(), r["steps"].get<double>(),
+               r["fetches"].get<double>(), r["wrong_percent"].get<double>(), r["uv_texels"]["p99"].get<double>(),
+               r["height"]["p99"].get<double>());
   }
 }
 
@@ -101,15 +107,22 @@ Status run_bench(const Context& context, const BenchOptions& options) {
 
 void add_bench(CLI::App& app, Context& context) {
   auto options = std::make_shared<BenchOptions>();
-  CLI::App* command = add_command(app, context, "bench", "Time techniques against each other, with their errors", [&context, options] { return run_bench(context, *options); });
+  CLI::App* command = add_command(app, context, "bench", "Time techniques against each other, with their errors",
+                                  [&context, options] { return run_bench(context, *options); });
   command->add_option("--techniques", options->techniques, "a,b,… or all; the first is the reference")->required();
   command->add_option("--height", options->height, "Height file")->required();
   command->add_option("--address", options->address)->capture_default_str();
-  command->add_option("--scale", options->scale, "Height of the lid in texture widths")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--scale", options->scale, "Height of the lid in texture widths")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   CLI::Option* rays = command->add_option("--rays", options->rays, "rays.csv");
-  command->add_option("--angle", options->angle, "Degrees above the base plane")->check(CLI::Range(0.01, 90.0))->excludes(rays)->capture_default_str();
+  command->add_option("--angle", options->angle, "Degrees above the base plane")
+      ->check(CLI::Range(0.01, 90.0))
+      ->excludes(rays)
+      ->capture_default_str();
   command->add_option("--backend", options->backend)->capture_default_str();
-  command->add_option("--filter", options->filter, "exact or hardware; --set technique.filter=… for one")->capture_default_str();
+  command->add_option("--filter", options->filter, "exact or hardware; --set technique.filter=… for one")
+      ->capture_default_str();
   command->add_option("--repeat", options->repeat, "Timed rounds")->check(CLI::Range(1, 1000))->capture_default_str();
   command->add_option("--set", options->set, "technique.parameter=value");
 }

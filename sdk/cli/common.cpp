@@ -1,11 +1,11 @@
 #include "common.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fmt/format.h>
 #include <fstream>
-#include <unistd.h>
 
 #include "mesh_file.hpp"
 
@@ -31,7 +31,11 @@ void Context::report(const Error& error) {
 CLI::App* add_command(CLI::App& app, Context& context, const std::string& name, const std::string& title,
                       std::function<Status()> run) {
   CLI::App* command = app.add_subcommand(name, title);
-  command->add_option("--techniques-dir,--techniques-folder,-I", context.folders, "Folder of technique, map or stage folders to add")->type_name("DIR")->allow_extra_args(false);
+  command
+      ->add_option("--techniques-dir,--techniques-folder,-I", context.folders,
+                   "Folder of technique, map or stage folders to add")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
   command->add_flag("--json", context.json, "Machine-readable output");
   command->callback([&context, run = std::move(run)] {
     if (Status status = run(); !status) context.report(status.error());
@@ -42,7 +46,9 @@ CLI::App* add_command(CLI::App& app, Context& context, const std::string& name, 
 void add_techniques_option(CLI::App& app, Context& context) {
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
     if (command->get_option_no_throw("--techniques")) continue;
-    command->add_option("--techniques", context.folders, "As --techniques-dir")->type_name("DIR")->allow_extra_args(false);
+    command->add_option("--techniques", context.folders, "As --techniques-dir")
+        ->type_name("DIR")
+        ->allow_extra_args(false);
   }
 }
 
@@ -73,12 +79,14 @@ Result<double> parse_number(const std::string& text, const std::string& key) {
 
 }  // namespace
 
-Result<Settings> parse_settings(const Registry& registry, const std::vector<std::string>& given, const std::string& only) {
+Result<Settings> parse_settings(const Registry& registry, const std::vector<std::string>& given,
+                                const std::string& only) {
   Settings settings;
   std::vector<std::string> known = known_parameters(registry);
   for (const std::string& item : given) {
     std::size_t equals = item.find('=');
-    if (equals == std::string::npos) return fail(ErrorCode::usage, "cli.set", fmt::format("--set {}: expected name=value", item));
+    if (equals == std::string::npos)
+      return fail(ErrorCode::usage, "cli.set", fmt::format("--set {}: expected name=value", item));
     std::string key = item.substr(0, equals), text = item.substr(equals + 1);
     if (key.find('.') == std::string::npos && !only.empty()) key = only + "." + key;
     std::string owner = key.substr(0, key.find('.'));
@@ -91,7 +99,8 @@ Result<Settings> parse_settings(const Registry& registry, const std::vector<std:
     if (std::find(known.begin(), known.end(), key) == known.end()) {
       std::string nearest = nearest_name(key, known);
       return fail(ErrorCode::usage, "cli.set",
-                  fmt::format("--set {}: '{}' is no parameter{}", item, key, nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+                  fmt::format("--set {}: '{}' is no parameter{}", item, key,
+                              nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
     }
     Result<double> value = parse_number(text, key);
     if (!value) return tl::unexpected(value.error());
@@ -122,7 +131,8 @@ Result<std::vector<std::string>> technique_names(const Registry& registry, const
       names.push_back(name);
     }
   }
-  if (names.empty()) return fail(ErrorCode::usage, "cli.no-technique", "no technique is named; expected one or more, or 'all'");
+  if (names.empty())
+    return fail(ErrorCode::usage, "cli.no-technique", "no technique is named; expected one or more, or 'all'");
   return names;
 }
 
@@ -171,12 +181,16 @@ Status write_text(const std::string& path, const std::string& text) {
 Status make_folder(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) return fail(ErrorCode::io, "cli.folder", fmt::format("folder '{}' cannot be made: {}", path.string(), error.message()), path.string());
+  if (error)
+    return fail(ErrorCode::io, "cli.folder",
+                fmt::format("folder '{}' cannot be made: {}", path.string(), error.message()), path.string());
   return {};
 }
 
 nlohmann::json to_json(const ErrorFigures& f) {
-  auto quantiles = [](const ErrorQuantiles& q) { return nlohmann::json{{"p50", q.p50}, {"p99", q.p99}, {"max", q.max}}; };
+  auto quantiles = [](const ErrorQuantiles& q) {
+    return nlohmann::json{{"p50", q.p50}, {"p99", q.p99}, {"max", q.max}};
+  };
   return {{"rays", f.rays},
           {"ambiguous", f.ambiguous},
           {"judged", f.judged},
@@ -198,7 +212,8 @@ void Progress::advance(const std::string& what) {
   if (!shown_) return;
   constexpr std::size_t width = 30;
   std::size_t filled = total_ ? std::min(width, width * done_ / total_) : width;
-  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{} {}", label_, "", filled, "", width - filled, done_, total_, what);
+  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{} {}", label_, "", filled, "", width - filled, done_, total_,
+             what);
 }
 
 Progress::~Progress() {

@@ -41,7 +41,8 @@ struct Settings {
 
 /// Parses `k=v` and `owner.k=v`; an unqualified key belongs to `only` (the command's single technique, or empty).
 /// Errors: "cli.set" with the nearest known name.
-Result<Settings> parse_settings(const Registry& registry, const std::vector<std::string>& given, const std::string& only);
+Result<Settings> parse_settings(const Registry& registry, const std::vector<std::string>& given,
+                                const std::string& only);
 
 /// Parses and opens a backend; with `oracle` allowed the pointer is null.
 Result<std::unique_ptr<Backend>> open(const std::string& name, bool validation);

@@ -1,7 +1,7 @@
 /// relievo compile: one technique in one stage, to every target asked for.
+#include <fmt/format.h>
 #include <algorithm>
 #include <cstring>
-#include <fmt/format.h>
 
 #include "common.hpp"
 #include "relievo/compile.hpp"
@@ -33,7 +33,9 @@ Result<std::map<std::string, BindingTime>> parse_bindings(const CompileOptions& 
       times[name] = known;
       found = true;
     }
-    if (!found) return fail(ErrorCode::usage, "compile.bind", fmt::format("--bind {}: expected owner.parameter=macro, =specialization or =uniform", item));
+    if (!found)
+      return fail(ErrorCode::usage, "compile.bind",
+                  fmt::format("--bind {}: expected owner.parameter=macro, =specialization or =uniform", item));
   }
   for (const std::string& item : options.defines) times[item.substr(0, item.find('='))] = BindingTime::macro;
   return times;
@@ -64,7 +66,8 @@ Result<std::vector<Target>> parse_targets(const std::vector<std::string>& names)
   return targets;
 }
 
-Result<Permutation> permutation_of(const Registry& registry, const CompileOptions& options, const std::string& technique) {
+Result<Permutation> permutation_of(const Registry& registry, const CompileOptions& options,
+                                   const std::string& technique) {
   Result<AddressMode> address = parse_address_mode(options.address);
   if (!address) return tl::unexpected(address.error());
   Result<HeightFilter> filter = parse_height_filter(options.filter);
@@ -90,11 +93,15 @@ std::string spirv_bytes(const std::vector<std::uint32_t>& words) {
   return bytes;
 }
 
-Status write_outputs(const CompiledProgram& program, const std::vector<Target>& targets, const std::string& base, const std::string& folder) {
+Status write_outputs(const CompiledProgram& program, const std::vector<Target>& targets, const std::string& base,
+                     const std::string& folder) {
   for (const CompiledShader& shader : program.shaders) {
     for (const Target& target : targets) {
-      std::string content = target.language == Language::spirv ? spirv_bytes(shader.spirv) : shader.text.at(to_string(target));
-      std::string path = folder == "-" ? "-" : fmt::format("{}/{}.{}.{}{}", folder, base, stage_suffix(shader.stage), to_string(target), file_extension(target));
+      std::string content =
+          target.language == Language::spirv ? spirv_bytes(shader.spirv) : shader.text.at(to_string(target));
+      std::string path = folder == "-" ? "-"
+                                       : fmt::format("{}/{}.{}.{}{}", folder, base, stage_suffix(shader.stage),
+                                                     to_string(target), file_extension(target));
       if (Status status = write_text(path, content); !status) return status;
     }
   }
@@ -104,21 +111,26 @@ Status write_outputs(const CompiledProgram& program, const std::vector<Target>& 
 Status write_depfile(const ComposedProgram& program, const std::string& base, const CompileOptions& options) {
   std::string text = fmt::format("{}/{}.json:", options.output == "-" ? "." : options.output, base);
   std::vector<std::string> files;
-  for (const ComposedShader& shader : program.shaders) files.insert(files.end(), shader.files.begin(), shader.files.end());
+  for (const ComposedShader& shader : program.shaders)
+    files.insert(files.end(), shader.files.begin(), shader.files.end());
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
   for (const std::string& file : files) text += " \\\n  " + file;
-  std::string path = options.depfile.empty() ? fmt::format("{}/{}.d", options.output == "-" ? "." : options.output, base) : options.depfile;
+  std::string path = options.depfile.empty()
+                         ? fmt::format("{}/{}.d", options.output == "-" ? "." : options.output, base)
+                         : options.depfile;
   return write_text(path, text + "\n");
 }
 
-Status compile_one(const Registry& registry, const CompileOptions& options, std::vector<Target> targets, const std::string& technique) {
+Status compile_one(const Registry& registry, const CompileOptions& options, std::vector<Target> targets,
+                   const std::string& technique) {
   Result<Permutation> permutation = permutation_of(registry, options, technique);
   if (!permutation) return tl::unexpected(permutation.error());
   Result<ComposedProgram> composed = compose(registry, *permutation);
   if (!composed) return tl::unexpected(composed.error());
   Result<const StageDescriptor*> stage = registry.stage(options.stage);
-  if (std::find(options.targets.begin(), options.targets.end(), "all") != options.targets.end()) targets = allowed_targets(*composed, (*stage)->fallback);
+  if (std::find(options.targets.begin(), options.targets.end(), "all") != options.targets.end())
+    targets = allowed_targets(*composed, (*stage)->fallback);
   relievo::CompileOptions compile_options;
   compile_options.optimize = !options.keep_unoptimized;
   compile_options.threads = options.jobs;
@@ -157,18 +169,22 @@ Status run_compile(const Context& context, const CompileOptions& options) {
 
 void add_compile(CLI::App& app, Context& context) {
   auto options = std::make_shared<CompileOptions>();
-  CLI::App* command = add_command(app, context, "compile", "Compile a technique in a stage for every target", [&context, options] { return run_compile(context, *options); });
+  CLI::App* command = add_command(app, context, "compile", "Compile a technique in a stage for every target",
+                                  [&context, options] { return run_compile(context, *options); });
   command->add_option("techniques", options->techniques, "Techniques, or 'all'; none for a stage that traces nothing");
   command->add_option("--stage", options->stage)->capture_default_str();
   command->add_option("--target", options->targets, "spirv-1.0, glsl-330, …, or all")->required();
-  command->add_option("-o,--output", options->output, "Folder for the outputs and the reflection; - for stdout")->capture_default_str();
+  command->add_option("-o,--output", options->output, "Folder for the outputs and the reflection; - for stdout")
+      ->capture_default_str();
   command->add_option("--address", options->address)->capture_default_str();
   command->add_option("--filter", options->filter)->capture_default_str();
   command->add_option("--aov", options->aov)->capture_default_str();
   command->add_option("--set", options->set, "parameter=value");
   command->add_option("-D", options->defines, "parameter=value, as a macro");
   command->add_option("--bind", options->bindings, "owner.parameter=macro|specialization|uniform");
-  command->add_option("-j", options->jobs, "Threads; 0 = all. The outputs do not depend on it")->check(CLI::Range(0, 1024))->capture_default_str();
+  command->add_option("-j", options->jobs, "Threads; 0 = all. The outputs do not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
   command->add_flag("--count", options->count, "Count steps and fetches");
   command->add_flag("--O0", options->keep_unoptimized, "Do not optimise");
   command->add_flag("--MD", options->depend, "Write a depfile");

@@ -1,6 +1,6 @@
 /// relievo conform: do the backends agree with each other and with what is claimed?
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "evaluation/evaluation.hpp"
 
@@ -17,10 +17,13 @@ struct ConformOptions {
 void print(const Evaluation& evaluation) {
   for (const NotRun& n : evaluation.not_run) fmt::print("not run: {}, because {}\n", n.what, n.reason);
   if (!evaluation.rays.empty()) {
-    fmt::print("{:<22} {:>5} {:<20} {:<9} {:<8} {:>9} {:>9} {:>10} {:>10}\n", "map", "angle", "technique", "filter", "backend", "wrong %", "missed %", "p99 texel", "p99 |dH|");
+    fmt::print("{:<22} {:>5} {:<20} {:<9} {:<8} {:>9} {:>9} {:>10} {:>10}\n", "map", "angle", "technique", "filter",
+               "backend", "wrong %", "missed %", "p99 texel", "p99 |dH|");
   }
   for (const RayRow& r : evaluation.rays) {
-    fmt::print("{:<22} {:>5} {:<20} {:<9} {:<8} {:>9.4f} {:>9.4f} {:>10.2e} {:>10.2e}\n", r.case_name, r.angle, r.technique, r.filter, r.backend, r.error.wrong_percent(), r.error.percent(r.error.missed), r.error.uv_texels.p99, r.error.height.p99);
+    fmt::print("{:<22} {:>5} {:<20} {:<9} {:<8} {:>9.4f} {:>9.4f} {:>10.2e} {:>10.2e}\n", r.case_name, r.angle,
+               r.technique, r.filter, r.backend, r.error.wrong_percent(), r.error.percent(r.error.missed),
+               r.error.uv_texels.p99, r.error.height.p99);
   }
   for (const Check& c : evaluation.checks) {
     fmt::print("{} {}: {}; expected {}\n", c.passed ? "pass" : "FAIL", c.name, c.found, c.expected);
@@ -33,7 +36,8 @@ Status run_conform(const Context& context, const ConformOptions& options) {
   if (options.scenes.empty() && options.heights.empty()) {
     return fail(ErrorCode::usage, "conform.nothing", "nothing to conform on; expected --scene FILE or --height FILE");
   }
-  Result<EvaluationInput> input = make_input(*registry, options.techniques, options.scenes, options.heights, options.address, options.set);
+  Result<EvaluationInput> input =
+      make_input(*registry, options.techniques, options.scenes, options.heights, options.address, options.set);
   if (!input) return tl::unexpected(input.error());
   input->backends = options.backends;
   input->ray_image = options.ray_image;
@@ -50,8 +54,11 @@ Status run_conform(const Context& context, const ConformOptions& options) {
   } else {
     print(*evaluation);
   }
-  std::size_t failed = static_cast<std::size_t>(std::count_if(evaluation->checks.begin(), evaluation->checks.end(), [](const Check& c) { return !c.passed; }));
-  if (failed > 0) return fail(ErrorCode::mismatch, "conform.failed", fmt::format("{} of {} checks fail", failed, evaluation->checks.size()));
+  std::size_t failed = static_cast<std::size_t>(
+      std::count_if(evaluation->checks.begin(), evaluation->checks.end(), [](const Check& c) { return !c.passed; }));
+  if (failed > 0)
+    return fail(ErrorCode::mismatch, "conform.failed",
+                fmt::format("{} of {} checks fail", failed, evaluation->checks.size()));
   return {};
 }
 
@@ -59,14 +66,21 @@ Status run_conform(const Context& context, const ConformOptions& options) {
 
 void add_conform(CLI::App& app, Context& context) {
   auto options = std::make_shared<ConformOptions>();
-  CLI::App* command = add_command(app, context, "conform", "Compare backends with each other, the oracle and the claims", [&context, options] { return run_conform(context, *options); });
+  CLI::App* command =
+      add_command(app, context, "conform", "Compare backends with each other, the oracle and the claims",
+                  [&context, options] { return run_conform(context, *options); });
   command->add_option("--techniques", options->techniques, "a,b,… or all")->capture_default_str();
   command->add_option("--scene", options->scenes, "Scene files: pictures of every drawing stage");
-  command->add_option("--height", options->heights, "Height files, each with an optional :scale: rays at 60°, 20° and 8°");
+  command->add_option("--height", options->heights,
+                      "Height files, each with an optional :scale: rays at 60°, 20° and 8°");
   command->add_option("--address", options->address, "Of the height files")->capture_default_str();
   command->add_option("--backends", options->backends)->delimiter(',')->capture_default_str();
-  command->add_option("--ray-image", options->ray_image, "Rays a side of the ray image")->check(CLI::Range(1, 8192))->capture_default_str();
-  command->add_option("--repeats", options->repeats, "Runs that must be byte-identical")->check(CLI::Range(1, 100))->capture_default_str();
+  command->add_option("--ray-image", options->ray_image, "Rays a side of the ray image")
+      ->check(CLI::Range(1, 8192))
+      ->capture_default_str();
+  command->add_option("--repeats", options->repeats, "Runs that must be byte-identical")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
   command->add_option("--set", options->set, "technique.parameter=value");
   command->add_option("-o,--output", options->output, "Folder for the pictures");
 }

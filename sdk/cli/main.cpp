@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "common.hpp"
 
 namespace {
@@ -14,18 +16,40 @@ std::vector<std::string> long_options(int argc, char** argv) {
   return arguments;
 }
 
+/// A first word that is no command is answered with the nearest one.
+relievo::Status check_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return {};
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    known.push_back(command->get_name());
+  if (std::find(known.begin(), known.end(), argv[1]) != known.end()) return {};
+  std::string nearest = relievo::nearest_name(argv[1], known);
+  return relievo::fail(relievo::ErrorCode::usage, "cli.unknown-command",
+                       fmt::format("the command '{}' is not known; {}", argv[1],
+                                   nearest.empty() ? fmt::format("known are {}", fmt::join(known, ", "))
+                                                   : fmt::format("the nearest is '{}'", nearest)));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace relievo::cli;
-  CLI::App app{"Displacement-mapping techniques: compiled for every target, run on several APIs, measured against an exact oracle", "relievo"};
+  CLI::App app{
+      "Displacement-mapping techniques: compiled for every target, run on several APIs, measured against an exact "
+      "oracle",
+      "relievo"};
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("relievo ") + RELIEVO_VERSION);
   Context context;
-  for (auto add : {add_list, add_describe, add_compile, add_bake, add_trace, add_render, add_bench, add_conform, add_report}) {
+  for (auto add :
+       {add_list, add_describe, add_compile, add_bake, add_trace, add_render, add_bench, add_conform, add_report}) {
     add(app, context);
   }
   add_techniques_option(app, context);
+  if (relievo::Status status = check_command(app, argc, argv); !status) {
+    context.report(status.error());
+    return context.exit_code;
+  }
   try {
     app.parse(long_options(argc, argv));
   } catch (const CLI::ParseError& error) {

@@ -25,7 +25,8 @@ Result<Ray> parse_ray(const std::vector<std::string_view>& cells, const std::str
   Ray ray;
   double* fields[] = {&ray.u, &ray.v, &ray.h, &ray.du, &ray.dv, &ray.dh, &ray.t_max};
   if (cells.size() != 6 && cells.size() != 7) {
-    return fail(ErrorCode::io, "rays.columns", fmt::format("row has {} values; expected 6 or 7: u,v,h,du,dv,dh[,t_max]", cells.size()), path, line, 1);
+    return fail(ErrorCode::io, "rays.columns",
+                fmt::format("row has {} values; expected 6 or 7: u,v,h,du,dv,dh[,t_max]", cells.size()), path, line, 1);
   }
   int column = 1;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -33,7 +34,8 @@ Result<Ray> parse_ray(const std::vector<std::string_view>& cells, const std::str
     if (i == 6 && cell.empty()) break;
     char* end = nullptr;
     *fields[i] = std::strtod(cell.c_str(), &end);
-    if (cell.empty() || *end != '\0') return fail(ErrorCode::io, "rays.number", fmt::format("'{}' is not a number", cell), path, line, column);
+    if (cell.empty() || *end != '\0')
+      return fail(ErrorCode::io, "rays.number", fmt::format("'{}' is not a number", cell), path, line, column);
     column += static_cast<int>(cell.size()) + 1;
   }
   return ray;
@@ -49,7 +51,9 @@ Result<std::vector<Ray>> parse_rays(std::istream& stream, const std::string& pat
       constexpr std::string_view names[] = {"u", "v", "h", "du", "dv", "dh", "t_max"};
       bool good = cells.size() == 6 || cells.size() == 7;
       for (std::size_t i = 0; good && i < cells.size(); ++i) good = cells[i] == names[i];
-      if (!good) return fail(ErrorCode::io, "rays.header", fmt::format("header is '{}'; expected u,v,h,du,dv,dh[,t_max]", line.substr(0, 80)), path, 1, 1);
+      if (!good)
+        return fail(ErrorCode::io, "rays.header",
+                    fmt::format("header is '{}'; expected u,v,h,du,dv,dh[,t_max]", line.substr(0, 80)), path, 1, 1);
       continue;
     }
     if (blank) continue;
@@ -57,7 +61,8 @@ Result<std::vector<Ray>> parse_rays(std::istream& stream, const std::string& pat
     if (!ray) return tl::unexpected(ray.error());
     rays.push_back(*ray);
   }
-  if (rays.empty()) return fail(ErrorCode::io, "rays.empty", "there are no rays; expected a header and at least one row", path);
+  if (rays.empty())
+    return fail(ErrorCode::io, "rays.empty", "there are no rays; expected a header and at least one row", path);
   return rays;
 }
 
@@ -66,7 +71,8 @@ Result<std::vector<Ray>> parse_rays(std::istream& stream, const std::string& pat
 Result<std::vector<Ray>> read_rays(const std::string& path) {
   if (path == "-") return parse_rays(std::cin, "<stdin>");
   std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) return fail(ErrorCode::io, "rays.open", fmt::format("'{}' cannot be opened", path), path);
+  if (!file || std::filesystem::is_directory(path))
+    return fail(ErrorCode::io, "rays.open", fmt::format("'{}' cannot be opened", path), path);
   return parse_rays(file, path);
 }
 
@@ -74,7 +80,8 @@ std::string format_hits(const std::vector<Hit>& hits, int digits) {
   fmt::memory_buffer text;
   fmt::format_to(std::back_inserter(text), "status,t,u,v,h,steps,fetches\n");
   for (const Hit& hit : hits) {
-    fmt::format_to(std::back_inserter(text), "{},{:.{}g},{:.{}g},{:.{}g},{:.{}g},{},{}\n", to_string(hit.status), hit.t, digits, hit.u, digits, hit.v, digits, hit.h, digits, hit.steps, hit.fetches);
+    fmt::format_to(std::back_inserter(text), "{},{:.{}g},{:.{}g},{:.{}g},{:.{}g},{},{}\n", to_string(hit.status), hit.t,
+                   digits, hit.u, digits, hit.v, digits, hit.h, digits, hit.steps, hit.fetches);
   }
   return fmt::to_string(text);
 }

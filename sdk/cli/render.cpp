@@ -1,7 +1,7 @@
 /// relievo render: a picture of a scene.
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "common.hpp"
 #include "relievo/image.hpp"
@@ -39,7 +39,9 @@ Image for_png(Image image, Aov aov) {
 Status write_image(const RenderResult& result, Aov aov, const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   if (extension == ".exr") return write_exr(path, result.image);
-  if (extension != ".png") return fail(ErrorCode::usage, "render.format", fmt::format("'{}' has the extension '{}'; expected .png or .exr", path, extension), path);
+  if (extension != ".png")
+    return fail(ErrorCode::usage, "render.format",
+                fmt::format("'{}' has the extension '{}'; expected .png or .exr", path, extension), path);
   if (aov == Aov::color) return write_png(path, result.image.width, result.image.height, 4, result.color);
   return write_png(path, for_png(result.image, aov));
 }
@@ -60,7 +62,8 @@ Status run_render(const Context& context, const RenderOptions& options) {
   Result<std::unique_ptr<Backend>> backend = open(options.backend, options.validation);
   if (!backend) return tl::unexpected(backend.error());
   RenderRequest request{options.stage, options.technique, *filter, *aov, settings->values};
-  if (auto own = settings->filters.find(options.technique); own != settings->filters.end()) request.filter = own->second;
+  if (auto own = settings->filters.find(options.technique); own != settings->filters.end())
+    request.filter = own->second;
   MapSet maps = map_set(loaded->height);
   std::vector<std::string> messages;
   Result<RenderResult> result = render(**backend, *registry, loaded->scene, loaded->mesh, maps, request, &messages);
@@ -68,10 +71,17 @@ Status run_render(const Context& context, const RenderOptions& options) {
   if (!result) return tl::unexpected(result.error());
   if (Status status = write_image(*result, *aov, options.output); !status) return status;
   if (context.json) {
-    fmt::print("{}\n", nlohmann::json{{"output", options.output}, {"width", result->image.width}, {"height", result->image.height}, {"seconds", result->seconds}, {"degenerate_triangles", result->degenerate_triangles}}.dump(2));
+    fmt::print("{}\n", nlohmann::json{{"output", options.output},
+                                      {"width", result->image.width},
+                                      {"height", result->image.height},
+                                      {"seconds", result->seconds},
+                                      {"degenerate_triangles", result->degenerate_triangles}}
+                           .dump(2));
   } else {
-    fmt::print("{}x{}, {:.1f} ms -> {}\n", result->image.width, result->image.height, result->seconds * 1e3, options.output);
-    if (result->degenerate_triangles) fmt::print("{} degenerate triangles drawn undisplaced\n", result->degenerate_triangles);
+    fmt::print("{}x{}, {:.1f} ms -> {}\n", result->image.width, result->image.height, result->seconds * 1e3,
+               options.output);
+    if (result->degenerate_triangles)
+      fmt::print("{} degenerate triangles drawn undisplaced\n", result->degenerate_triangles);
   }
   return {};
 }
@@ -80,13 +90,15 @@ Status run_render(const Context& context, const RenderOptions& options) {
 
 void add_render(CLI::App& app, Context& context) {
   auto options = std::make_shared<RenderOptions>();
-  CLI::App* command = add_command(app, context, "render", "Render a scene", [&context, options] { return run_render(context, *options); });
+  CLI::App* command = add_command(app, context, "render", "Render a scene",
+                                  [&context, options] { return run_render(context, *options); });
   command->add_option("scene", options->scene, "Scene file (TOML)")->required();
   command->add_option("--technique", options->technique, "Technique for the stage's roles");
   command->add_option("--stage", options->stage, "surface, vertex, prism, …")->capture_default_str();
   command->add_option("--backend", options->backend)->capture_default_str();
   command->add_option("-o,--output", options->output, ".png, or .exr for the numbers")->required();
-  command->add_option("--aov", options->aov, "color, depth, normal, uv, steps, status, ray_origin or ray_direction")->capture_default_str();
+  command->add_option("--aov", options->aov, "color, depth, normal, uv, steps, status, ray_origin or ray_direction")
+      ->capture_default_str();
   command->add_option("--filter", options->filter, "hardware or exact")->capture_default_str();
   command->add_option("--set", options->set, "parameter=value");
   command->add_option("--width", options->width, "Instead of the scene's")->check(CLI::Range(1, 8192));

@@ -23,22 +23,26 @@ std::string summary(const std::vector<Hit>& hits) {
   return text;
 }
 
-Result<std::vector<Hit>> trace_on(const Context& context, const TraceOptions& options, const HeightMap& height, const std::vector<Ray>& rays) {
+Result<std::vector<Hit>> trace_on(const Context& context, const TraceOptions& options, const HeightMap& height,
+                                  const std::vector<Ray>& rays) {
   if (options.backend == "oracle") return Oracle(height).trace(rays);
   Result<Registry> registry = context.registry();
   if (!registry) return tl::unexpected(registry.error());
-  if (options.technique.empty()) return fail(ErrorCode::usage, "trace.no-technique", "no technique is named; expected --technique NAME");
+  if (options.technique.empty())
+    return fail(ErrorCode::usage, "trace.no-technique", "no technique is named; expected --technique NAME");
   Result<Settings> settings = parse_settings(*registry, options.set, options.technique);
   if (!settings) return tl::unexpected(settings.error());
   Result<HeightFilter> filter = parse_height_filter(options.filter);
   if (!filter) return tl::unexpected(filter.error());
   TraceRequest request{options.technique, *filter, true, settings->values};
-  if (auto own = settings->filters.find(options.technique); own != settings->filters.end()) request.filter = own->second;
+  if (auto own = settings->filters.find(options.technique); own != settings->filters.end())
+    request.filter = own->second;
   Result<std::unique_ptr<Backend>> backend = open(options.backend, options.validation);
   if (!backend) return tl::unexpected(backend.error());
   MapSet maps = map_set(height);
   std::vector<std::string> messages;
-  Result<std::vector<TraceResult>> traced = trace(**backend, *registry, maps, rays, std::span(&request, 1), 1, &messages);
+  Result<std::vector<TraceResult>> traced =
+      trace(**backend, *registry, maps, rays, std::span(&request, 1), 1, &messages);
   for (const std::string& message : messages) fmt::print(stderr, "{}\n", message);
   if (!traced) return tl::unexpected(traced.error());
   return std::move(traced->front().hits);
@@ -51,10 +55,12 @@ Status run_trace(const Context& context, const TraceOptions& options) {
   if (!rays) return tl::unexpected(rays.error());
   Result<std::vector<Hit>> hits = trace_on(context, options, *height, *rays);
   if (!hits) return tl::unexpected(hits.error());
-  if (Status status = write_text(options.output, format_hits(*hits, options.backend == "oracle" ? 17 : 9)); !status) return status;
+  if (Status status = write_text(options.output, format_hits(*hits, options.backend == "oracle" ? 17 : 9)); !status)
+    return status;
   if (options.output == "-") return {};
   if (context.json) {
-    fmt::print("{}\n", nlohmann::json{{"rays", hits->size()}, {"summary", summary(*hits)}, {"output", options.output}}.dump(2));
+    fmt::print("{}\n",
+               nlohmann::json{{"rays", hits->size()}, {"summary", summary(*hits)}, {"output", options.output}}.dump(2));
   } else {
     fmt::print("{} rays: {} -> {}\n", hits->size(), summary(*hits), options.output);
   }
@@ -65,7 +71,8 @@ Status run_trace(const Context& context, const TraceOptions& options) {
 
 void add_trace(CLI::App& app, Context& context) {
   auto options = std::make_shared<TraceOptions>();
-  CLI::App* command = add_command(app, context, "trace", "Trace rays against a height map", [&context, options] { return run_trace(context, *options); });
+  CLI::App* command = add_command(app, context, "trace", "Trace rays against a height map",
+                                  [&context, options] { return run_trace(context, *options); });
   command->add_option("--technique", options->technique, "Technique; not needed with --backend oracle");
   command->add_option("--height", options->height, "Height file")->required();
   command->add_option("--rays", options->rays, "rays.csv: u,v,h,du,dv,dh[,t_max]; - for stdin")->required();

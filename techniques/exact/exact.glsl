@@ -124,7 +124,7 @@ Hit exact_trace(Ray ray) {
   vec3 entry = relievo_entry_point(ray, interval);
   ivec2 tile = ivec2(relievo_tile_of(entry.x, ray.direction.x, relievo_tile_shift(extent.x)),
                      relievo_tile_of(entry.y, ray.direction.y, relievo_tile_shift(extent.y)));
-  int top = relievo_max_pyramid_levels() - 1;
+  int top = relievo_max_pyramid_top();
   int steps = exact_max_steps;
   while (steps > 0) {
     --steps;

@@ -100,8 +100,8 @@ TEST_F(TemplateTechnique, TracesOnBothBackendsWithItsOwnMap) {
     const ErrorFigures figures = compare_hits(truth, traced->front().hits, map.width, map.height);
     EXPECT_LT(figures.wrong_percent(), 1.0) << name;
     EXPECT_GT(figures.judged, 250U);
-    const auto biased = trace_on(name, map, rays, request_of("template_technique", {{"template_technique.bias", 0.5}}),
-                                 registry_);
+    const auto biased =
+        trace_on(name, map, rays, request_of("template_technique", {{"template_technique.bias", 0.5}}), registry_);
     EXPECT_GT(compare_hits(truth, biased, map.width, map.height).wrong_percent(), 5) << "its parameter does nothing";
   }
 }

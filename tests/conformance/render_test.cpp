@@ -25,7 +25,9 @@ std::vector<std::pair<std::string, std::string>> drawing_cases() {
   return {{"surface", "relief"}, {"vertex", ""}, {"prism", "relief"}};
 }
 
-HeightMap hills() { return smooth_noise_map(48, 32); }
+HeightMap hills() {
+  return smooth_noise_map(48, 32);
+}
 
 std::size_t drawn(const Pixels& pixels) {
   std::size_t count = 0;
@@ -35,7 +37,9 @@ std::size_t drawn(const Pixels& pixels) {
 
 /// The rule for pictures of two backends: within 1/255 on 99.9 % of the pixels. The rest are edges, where two compilers
 /// may round a coordinate to either side of a triangle.
-bool pictures_agree(const Pixels& a, const Pixels& b) { return compare_images(a, b).within_percent >= 99.9; }
+bool pictures_agree(const Pixels& a, const Pixels& b) {
+  return compare_images(a, b).within_percent >= 99.9;
+}
 
 void expect_finite(const RenderResult& result, const std::string& what) {
   for (const float value : result.image.pixels) ASSERT_TRUE(std::isfinite(value)) << what;
@@ -125,26 +129,34 @@ TEST(Render, CountCracksCatchesOnePixel) {
   EXPECT_EQ(count_cracks(cracked, good, 96, 96), 1U);
 }
 
-/// A seam of normals (one normal a face instead of one a position) tears the prisms apart, and the count sees it.
+/// Triangles that do not share their edges leave gaps in an open mesh, and the count sees them.
 TEST(Render, CountCracksCatchesTornPrisms) {
-  const Scene scene = make_scene(MeshKind::torus, 200, 0.2f);
-  const Mesh whole = mesh_of(scene);
-  Mesh torn = whole;
-  torn.positions.clear(), torn.normals.clear(), torn.uvs.clear();
-  for (auto& triangle : torn.triangles) {
-    for (std::uint32_t& corner : triangle) {
-      torn.positions.push_back(whole.positions[corner]);
+  const Scene scene = make_scene(MeshKind::plane, 200);
+  const Mesh whole = subdivide(mesh_of(scene), 4);
+  Mesh torn{"torn", {}, {}, {}, {}};
+  for (const auto& triangle : whole.triangles) {
+    const auto first = static_cast<std::uint32_t>(torn.positions.size());
+    for (const std::uint32_t corner : triangle) {
+      std::array<float, 3> position{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        float middle = 0;
+        for (const std::uint32_t other : triangle) middle += whole.positions[other][c] / 3;
+        position[c] = middle + 0.9f * (whole.positions[corner][c] - middle);
+      }
+      torn.positions.push_back(position);
+      torn.normals.push_back(whole.normals[corner]);
       torn.uvs.push_back(whole.uvs[corner]);
-      std::array<float, 3> normal = whole.normals[corner];
-      normal[0] += torn.positions.size() % 2 == 0 ? 0.3f : -0.3f;  // no two triangles agree
-      torn.normals.push_back(normal);
-      corner = static_cast<std::uint32_t>(torn.positions.size() - 1);
     }
+    torn.triangles.push_back({first, first + 1, first + 2});
   }
-  const HeightMap map = constant_map(8, 8, 0.9);
+  const HeightMap map = constant_map(8, 8, 0.5);
   const Pixels reference = render_on("vulkan", scene, whole, map, request_of("vertex", "")).color;
-  const Pixels prism = render_on("vulkan", scene, torn, map, request_of("prism", "relief")).color;
-  EXPECT_GT(count_cracks(prism, reference, 200, 200), 0U);
+  EXPECT_EQ(
+      count_cracks(render_on("vulkan", scene, whole, map, request_of("prism", "relief")).color, reference, 200, 200),
+      0U);
+  EXPECT_GT(
+      count_cracks(render_on("vulkan", scene, torn, map, request_of("prism", "relief")).color, reference, 200, 200),
+      0U);
 }
 
 TEST(Render, AFineLinearSearchDrawsWhatTheOracleReplays) {
@@ -162,13 +174,14 @@ TEST(Render, AFineLinearSearchDrawsWhatTheOracleReplays) {
     EXPECT_GE(difference.mask_iou, 0.999) << name;
     RenderRequest coarse = fine;
     coarse.values["linear_search.steps"] = 4;
-    EXPECT_LT(compare_images(render_on(name, scene, mesh, hills(), coarse).color, oracle.color).within_percent, 90)
+    EXPECT_LT(compare_images(render_on(name, scene, mesh, hills(), coarse).color, oracle.color).within_percent, 99.5)
         << name << ": four steps must be seen";
   }
 }
 
 TEST(Render, TheStatusOfTheOraclesPixelsIsTheTechniques) {
-  const Scene scene = make_scene(MeshKind::plane, 96);
+  Scene scene = make_scene(MeshKind::plane, 96);
+  scene.displacement.bias = -scene.displacement.scale;  // the relief lies below the square: rays leave by its edge
   const Mesh mesh = mesh_of(scene);
   const HeightMap map = with_address(hills(), AddressMode::clip);
   RenderRequest fine = request_of("surface", "relief", Aov::status);
@@ -178,7 +191,8 @@ TEST(Render, TheStatusOfTheOraclesPixelsIsTheTechniques) {
   std::size_t same = 0, pixels = searched.image.pixels.size() / 4, outside = 0;
   for (std::size_t i = 0; i < pixels; ++i) {
     same += searched.image.pixels[4 * i] == oracle.image.pixels[4 * i];
-    outside += oracle.image.pixels[4 * i + 3] > 0 && oracle.image.pixels[4 * i] == static_cast<float>(HitStatus::outside);
+    outside +=
+        oracle.image.pixels[4 * i + 3] > 0 && oracle.image.pixels[4 * i] == static_cast<float>(HitStatus::outside);
   }
   EXPECT_GE(static_cast<double>(same), 0.999 * static_cast<double>(pixels));
   EXPECT_GT(outside, 0U) << "no ray leaves the clip map: the case shows nothing";
@@ -201,8 +215,8 @@ Mesh awkward_mesh() {
     mesh.normals.insert(mesh.normals.end(), 3, {0, 0, 1});
     mesh.triangles.push_back({first, first + 1, first + 2});
   };
-  add({{{0, 0, 0.3f}, {0.5f, 0, 0.3f}, {1, 0, 0.3f}}}, {{{0, 0}, {0.5f, 0}, {1, 0}}});              // no area
-  add({{{0, 0, 0.3f}, {0, 0, 0.3f}, {0, 0, 0.3f}}}, {{{0, 0}, {1, 0}, {0, 1}}});                    // a point
+  add({{{0, 0, 0.3f}, {0.5f, 0, 0.3f}, {1, 0, 0.3f}}}, {{{0, 0}, {0.5f, 0}, {1, 0}}});  // no area
+  add({{{0, 0, 0.3f}, {0, 0, 0.3f}, {0, 0, 0.3f}}}, {{{0, 0}, {1, 0}, {0, 1}}});        // a point
   add({{{-1, -1, 0.2f}, {-0.5f, -1, 0.2f}, {-1, -0.5f, 0.2f}}}, {{{0.3f, 0.3f}, {0.3f, 0.3f}, {0.3f, 0.3f}}});
   add({{{0.5f, 0.5f, 0.2f}, {1, 0.5f, 0.2f}, {0.5f, 1, 0.2f}}}, {{{1, 0}, {0, 0}, {1, 1}}});        // mirrored
   add({{{-1, 0.5f, 0.2f}, {-0.5f, 0.5f, 0.2f}, {-1, 1, 0.2f}}}, {{{0, 0}, {1, 0.9f}, {0.8f, 1}}});  // sheared
@@ -271,7 +285,8 @@ TEST(Render, DegenerateTrianglesAreCountedAndDrawnUndisplaced) {
   const Scene scene = make_scene(MeshKind::plane, 64);
   const auto result = render_on("vulkan", scene, awkward_mesh(), hills(), request_of("surface", "relief"));
   EXPECT_EQ(result.degenerate_triangles, 3U);
-  EXPECT_EQ(render_on("vulkan", scene, make_plane(), hills(), request_of("surface", "relief")).degenerate_triangles, 0U);
+  EXPECT_EQ(render_on("vulkan", scene, make_plane(), hills(), request_of("surface", "relief")).degenerate_triangles,
+            0U);
 }
 
 TEST(Render, DepthIsThatOfTheDisplacedMesh) {

@@ -17,7 +17,9 @@ struct Tally {
   int programs = 0, texts = 0, linked_by_driver = 0, refused = 0;
 };
 
-bool is_gl(const Target& target) { return target.language == Language::glsl || target.language == Language::essl; }
+bool is_gl(const Target& target) {
+  return target.language == Language::glsl || target.language == Language::essl;
+}
 
 /// What a target's refusal must look like, by the table of docs/targets.md: geometry has a fallback, compute a version.
 void expect_refusal(const Error& error, const StageDescriptor& stage, const Target& target) {

@@ -39,7 +39,9 @@ void expect_finite(const std::vector<Hit>& hits) {
 
 /// Equal, or within 1e-5: both drivers run the same SPIR-V or what was made of it, in float.
 bool agree(const Hit& a, const Hit& b) {
-  const auto near = [](double x, double y) { return std::abs(x - y) <= 1e-5 * std::max({1.0, std::abs(x), std::abs(y)}); };
+  const auto near = [](double x, double y) {
+    return std::abs(x - y) <= 1e-5 * std::max({1.0, std::abs(x), std::abs(y)});
+  };
   return a.status == b.status && near(a.t, b.t) && near(a.u, b.u) && near(a.v, b.v) && near(a.h, b.h);
 }
 
@@ -191,7 +193,8 @@ TEST(Trace, ARayThatStartsBelowTheSurfaceIsInsideAtZero) {
   const Hit hit = trace_one(constant_map(8, 8, 0.5), {0.3, 0.6, 0.25, 1, 0, -1});
   EXPECT_EQ(hit.status, HitStatus::inside);
   EXPECT_EQ(hit.t, 0);
-  EXPECT_EQ(trace_one(constant_map(8, 8, 0.5), {0.3, 0.6, -0.25, 1, 0, -1}).status, HitStatus::inside) << "under the base";
+  EXPECT_EQ(trace_one(constant_map(8, 8, 0.5), {0.3, 0.6, -0.25, 1, 0, -1}).status, HitStatus::inside)
+      << "under the base";
 }
 
 TEST(Trace, AClipMapEndsAtItsDomain) {

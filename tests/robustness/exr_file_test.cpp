@@ -14,12 +14,12 @@ namespace {
 
 using Floats = std::vector<float>;
 
-/// An EXR that tinyexr wrote: channels "A" of the type and "B" as floats, so that their sizes differ.
+/// An EXR that tinyexr wrote: channels "X" of the type and "Z" as floats, so that their sizes differ.
 std::vector<std::uint8_t> written_by_tinyexr(int width, int height, int compression, int type, const Floats& a,
                                              const Floats& b) {
   std::array<EXRChannelInfo, 2> channels = {};
-  std::strcpy(channels[0].name, "A");
-  std::strcpy(channels[1].name, "B");
+  std::strcpy(channels[0].name, "X");
+  std::strcpy(channels[1].name, "Z");
   Floats planes[2] = {a, b};
   std::array<unsigned char*, 2> images = {reinterpret_cast<unsigned char*>(planes[0].data()),
                                           reinterpret_cast<unsigned char*>(planes[1].data())};
@@ -99,7 +99,7 @@ TEST(ExrFile, DamageGivesAnImageOrAnError) {
        {TINYEXR_COMPRESSIONTYPE_NONE, TINYEXR_COMPRESSIONTYPE_RLE, TINYEXR_COMPRESSIONTYPE_ZIP}) {
     auto bytes = written_by_tinyexr(20, 18, compression, TINYEXR_PIXELTYPE_HALF, values, values);
     for (std::size_t at = 4; at < bytes.size(); ++at) {
-      for (const int flip : {0x01, 0x10, 0x80, 0xff}) {
+      for (const int flip : {0x01, 0xff}) {
         auto damaged = bytes;
         damaged[at] = static_cast<std::uint8_t>(damaged[at] ^ flip);
         const auto decoded = decode_exr({"a.exr", damaged});

@@ -25,8 +25,7 @@ struct ChildResult {
 
 /// Runs `program` to its end, in `folder` where one is given, with `variables` added to the environment.
 inline ChildResult run_child(const std::string& program, const std::vector<std::string>& arguments,
-                             const std::map<std::string, std::string>& variables = {},
-                             const std::string& input = {}) {
+                             const std::map<std::string, std::string>& variables = {}, const std::string& input = {}) {
   const TemporaryFolder streams;
   streams.write("in", input);
   std::vector<std::string> words = {program}, settings;

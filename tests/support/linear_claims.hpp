@@ -26,7 +26,7 @@ inline double clearance_at(const HeightMap& map, const Ray& ray, double t) {
 
 /// One ray of a linear search against the oracle's hit.
 struct LinearClaim {
-  bool certain = false;          ///< the search must hit, within [earliest, latest]
+  bool certain = false;             ///< the search must hit, within [earliest, latest]
   double earliest = 0, latest = 0;  ///< t
 };
 
@@ -38,9 +38,7 @@ inline LinearClaim linear_claim(const HeightMap& map, const Ray& ray, const Hit&
   claim.earliest = truth.t;
   for (int i = 1; i <= 64 * samples && clearance_at(map, ray, claim.earliest) <= float_clearance; ++i)
     claim.earliest = std::max(0.0, truth.t - step * i / samples);
-  const auto below = [&](double t) {
-    return t >= exit ? reaches_base : clearance_at(map, ray, t) <= -float_clearance;
-  };
+  const auto below = [&](double t) { return t >= exit ? reaches_base : clearance_at(map, ray, t) <= -float_clearance; };
   double start = truth.t;
   while (!below(start) && start < exit && start < truth.t + 8 * step) start += step / samples;
   claim.certain = true;
@@ -72,15 +70,15 @@ struct SearchRange {
 inline SearchRange search_range(const HeightMap& map, const Ray& ray) {
   SearchRange range{0, ray.t_max, false};
   if (ray.h > 1 && ray.dh < 0) range.enter = (1 - ray.h) / ray.dh;
-  if (ray.dh < 0 && -ray.h / ray.dh <= range.exit) range = {range.enter, std::max(-ray.h / ray.dh, 0.0), true};
-  if (ray.dh > 0) range.exit = std::min(range.exit, std::max((1 - ray.h) / ray.dh, 0.0));
-  if (map.address != AddressMode::clip) return range;
   for (const auto& [origin, direction] : {std::pair(ray.u, ray.du), std::pair(ray.v, ray.dv)}) {
-    if (direction == 0) continue;
+    if (map.address != AddressMode::clip || direction == 0) continue;
     const double zero = -origin / direction, one = (1 - origin) / direction;
     range.enter = std::max(range.enter, std::min(zero, one));
-    if (std::max(zero, one) < range.exit) range.exit = std::max(zero, one), range.reaches_base = false;
+    range.exit = std::min(range.exit, std::max(zero, one));
   }
+  const double base = ray.dh < 0 ? std::max(-ray.h / ray.dh, range.enter) : HUGE_VAL;
+  if (base <= range.exit) range.exit = base, range.reaches_base = base < HUGE_VAL;
+  if (ray.dh > 0) range.exit = std::min(range.exit, std::max((1 - ray.h) / ray.dh, 0.0));
   return range;
 }
 

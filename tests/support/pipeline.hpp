@@ -1,4 +1,5 @@
-/// The composed pipeline in tests: the registry, both backends with validation, and one call that must succeed silently.
+/// The composed pipeline in tests: the registry, both backends with validation, and one call that must succeed
+/// silently.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -9,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "relievo/render.hpp"
 #include "relievo/measure.hpp"
+#include "relievo/render.hpp"
 #include "relievo/trace.hpp"
 
 namespace relievo::test {

@@ -1,5 +1,5 @@
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "evaluation/evaluation.hpp"
 
@@ -30,7 +30,9 @@ Result<Evaluation> evaluate(const EvaluationInput& input) {
     backends[name] = std::move(*backend);
   }
   if (backends.empty()) {
-    return fail(ErrorCode::unsupported, "evaluation.no-backend", fmt::format("no backend is available: {}", evaluation.not_run.empty() ? "none was named" : evaluation.not_run.front().reason));
+    return fail(ErrorCode::unsupported, "evaluation.no-backend",
+                fmt::format("no backend is available: {}",
+                            evaluation.not_run.empty() ? "none was named" : evaluation.not_run.front().reason));
   }
   Progress progress("evaluate", steps_of(input, backends.size()));
   for (auto part : {evaluate_rays, evaluate_pictures, evaluate_cracks}) {
@@ -60,7 +62,8 @@ Result<EvaluationInput> make_input(const Registry& registry, const std::vector<s
     RayCase ray_case;
     std::size_t colon = item.rfind(':');
     std::string path = item;
-    if (colon != std::string::npos && item.find_first_not_of("0123456789.eE+-", colon + 1) == std::string::npos && colon + 1 < item.size()) {
+    if (colon != std::string::npos && item.find_first_not_of("0123456789.eE+-", colon + 1) == std::string::npos &&
+        colon + 1 < item.size()) {
       path = item.substr(0, colon);
       ray_case.scale = std::strtod(item.c_str() + colon + 1, nullptr);
     }

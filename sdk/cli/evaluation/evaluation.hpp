@@ -15,7 +15,7 @@ namespace relievo::cli {
 struct RayCase {
   std::string name;  ///< of the file, without folder and extension
   HeightMap height;
-  double scale = 0.1;                  ///< height of the lid in texture widths
+  double scale = 0.1;                        ///< height of the lid in texture widths
   std::vector<double> angles = {60, 20, 8};  ///< degrees above the base plane
 };
 
@@ -26,8 +26,8 @@ struct EvaluationInput {
   std::vector<RayCase> ray_cases;
   std::vector<std::pair<std::string, LoadedScene>> scenes;  ///< name and parts
   std::map<std::string, double> values;                     ///< "owner.parameter"
-  int ray_image = 1024;         ///< rays a case: ray_image²
-  int repeats = 3;              ///< timed rounds, and runs that must be byte-identical
+  int ray_image = 1024;                                     ///< rays a case: ray_image²
+  int repeats = 3;                                          ///< timed rounds, and runs that must be byte-identical
   bool time = true;
   std::filesystem::path pictures;  ///< folder for PNGs; empty = none are written
 };
@@ -44,21 +44,22 @@ struct RayRow {
 struct RayAgreement {
   std::string case_name, technique;
   double angle = 0;
-  std::uint64_t judged = 0;        ///< non-ambiguous rays
-  double equal_percent = 0;        ///< status equal and |Δt| ≤ 1e-5 relative
+  std::uint64_t judged = 0;  ///< non-ambiguous rays
+  double equal_percent = 0;  ///< status equal and |Δt| ≤ 1e-5 relative
 };
 
 /// One picture.
 struct PictureRow {
   std::string scene, stage, technique, backend;  ///< technique empty: the stage traces nothing
-  std::string file;             ///< PNG, relative to the pictures' folder; empty when none was written
-  std::string difference_file;  ///< against the oracle's picture; empty when there is none
+  std::string file;                              ///< PNG, relative to the pictures' folder; empty when none was written
+  std::string difference_file;                   ///< against the oracle's picture; empty when there is none
   double seconds = -1;
-  bool repeatable = true;       ///< all runs byte-identical
+  bool repeatable = true;  ///< all runs byte-identical
   std::uint64_t degenerate_triangles = 0;
 };
 
-/// Pictures compared: two backends, or one backend's and the oracle's, or the prisms' and the finely displaced mesh's ("vertex").
+/// Pictures compared: two backends, or one backend's and the oracle's, or the prisms' and the finely displaced mesh's
+/// ("vertex").
 struct PictureAgreement {
   std::string scene, stage, technique, left, right;
   ImageDifference difference;
@@ -93,15 +94,19 @@ struct Evaluation {
   std::vector<NotRun> not_run;
 };
 
-/// Runs everything. A backend that cannot be opened, or a stage that it cannot run, becomes a NotRun; an error of ours is returned.
+/// Runs everything. A backend that cannot be opened, or a stage that it cannot run, becomes a NotRun; an error of ours
+/// is returned.
 Result<Evaluation> evaluate(const EvaluationInput& input);
 
 /// The parts of `evaluate`, each filling its rows. `backends` holds the opened ones by name.
 using OpenBackends = std::map<std::string, std::unique_ptr<Backend>>;
 Status evaluate_rays(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress);
-Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress);
-Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress);
-/// Whether a technique claims first hits at all: the others miss some, so their silhouettes and cracks say nothing of the stage.
+Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation,
+                         Progress& progress);
+Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation,
+                       Progress& progress);
+/// Whether a technique claims first hits at all: the others miss some, so their silhouettes and cracks say nothing of
+/// the stage.
 bool holds_silhouette(const Registry& registry, const std::string& technique);
 /// The claims, from the rows.
 void judge(const EvaluationInput& input, Evaluation& evaluation);

@@ -1,6 +1,6 @@
 /// The claims of a conformance run and the figures that they stand on.
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "evaluation/evaluation.hpp"
 
@@ -8,16 +8,18 @@ namespace relievo::cli {
 
 namespace {
 
-constexpr double rays_equal_percent = 99.99;     // of non-ambiguous rays, between two backends
-constexpr double pixels_within_percent = 99.9;   // of pixels, within 1/255, between two backends
-constexpr double silhouette_iou = 0.99;          // prisms against the finely displaced mesh
+constexpr double rays_equal_percent = 99.99;    // of non-ambiguous rays, between two backends
+constexpr double pixels_within_percent = 99.9;  // of pixels, within 1/255, between two backends
+constexpr double silhouette_iou = 0.99;         // prisms against the finely displaced mesh
 
 bool is_backend(const Evaluation& evaluation, const std::string& name) {
-  return std::any_of(evaluation.backends.begin(), evaluation.backends.end(), [&](const BackendInfo& b) { return b.name == name; });
+  return std::any_of(evaluation.backends.begin(), evaluation.backends.end(),
+                     [&](const BackendInfo& b) { return b.name == name; });
 }
 
 template <class Rows, class Value>
-void check_least(const Rows& rows, const std::string& name, double least, const char* unit, Value value, std::vector<Check>& checks) {
+void check_least(const Rows& rows, const std::string& name, double least, const char* unit, Value value,
+                 std::vector<Check>& checks) {
   double worst = 1e300;
   std::string where;
   std::size_t count = 0;
@@ -30,12 +32,15 @@ void check_least(const Rows& rows, const std::string& name, double least, const 
     where = label;
   }
   if (count == 0) return;
-  checks.push_back({name, fmt::format("{:.5g}{} at worst of {} ({})", worst, unit, count, where), fmt::format("at least {}{}", least, unit), worst >= least});
+  checks.push_back({name, fmt::format("{:.5g}{} at worst of {} ({})", worst, unit, count, where),
+                    fmt::format("at least {}{}", least, unit), worst >= least});
 }
 
-void check_none(const std::string& name, std::uint64_t found, std::size_t of, const std::string& where, std::vector<Check>& checks) {
+void check_none(const std::string& name, std::uint64_t found, std::size_t of, const std::string& where,
+                std::vector<Check>& checks) {
   if (of == 0) return;
-  checks.push_back({name, fmt::format("{} in {} cases{}", found, of, where.empty() ? "" : " (" + where + ")"), "0", found == 0});
+  checks.push_back(
+      {name, fmt::format("{} in {} cases{}", found, of, where.empty() ? "" : " (" + where + ")"), "0", found == 0});
 }
 
 }  // namespace
@@ -48,17 +53,30 @@ bool holds_silhouette(const Registry& registry, const std::string& technique) {
 void judge(const EvaluationInput& input, Evaluation& evaluation) {
   using Judged = std::tuple<bool, double, std::string>;
   std::vector<Check>& checks = evaluation.checks;
-  check_least(evaluation.ray_agreements, "rays equal between backends", rays_equal_percent, " %", [](const RayAgreement& r) {
-    return Judged{true, r.equal_percent, fmt::format("{} on {} at {}°", r.technique, r.case_name, r.angle)};
-  }, checks);
-  check_least(evaluation.picture_agreements, "pixels within 1/255 between backends", pixels_within_percent, " %", [&](const PictureAgreement& p) {
-    return Judged{is_backend(evaluation, p.right), p.difference.within_percent, fmt::format("{} {} of {}", p.stage, p.technique, p.scene)};
-  }, checks);
-  check_least(evaluation.picture_agreements, "prism silhouette against the displaced mesh, IoU", silhouette_iou, "", [&](const PictureAgreement& p) {
-    bool closed = std::any_of(input.scenes.begin(), input.scenes.end(), [&](const auto& s) { return s.first == p.scene && s.second.scene.mesh.kind != MeshKind::plane; });
-    return Judged{closed && p.stage == "prism" && p.right == "vertex" && holds_silhouette(*input.registry, p.technique), p.difference.mask_iou,
-                  fmt::format("{} of {} on {}", p.technique, p.scene, p.left)};
-  }, checks);
+  check_least(
+      evaluation.ray_agreements, "rays equal between backends", rays_equal_percent, " %",
+      [](const RayAgreement& r) {
+        return Judged{true, r.equal_percent, fmt::format("{} on {} at {}°", r.technique, r.case_name, r.angle)};
+      },
+      checks);
+  check_least(
+      evaluation.picture_agreements, "pixels within 1/255 between backends", pixels_within_percent, " %",
+      [&](const PictureAgreement& p) {
+        return Judged{is_backend(evaluation, p.right), p.difference.within_percent,
+                      fmt::format("{} {} of {}", p.stage, p.technique, p.scene)};
+      },
+      checks);
+  check_least(
+      evaluation.picture_agreements, "prism silhouette against the displaced mesh, IoU", silhouette_iou, "",
+      [&](const PictureAgreement& p) {
+        bool closed = std::any_of(input.scenes.begin(), input.scenes.end(), [&](const auto& s) {
+          return s.first == p.scene && s.second.scene.mesh.kind != MeshKind::plane;
+        });
+        return Judged{
+            closed && p.stage == "prism" && p.right == "vertex" && holds_silhouette(*input.registry, p.technique),
+            p.difference.mask_iou, fmt::format("{} of {} on {}", p.technique, p.scene, p.left)};
+      },
+      checks);
   std::uint64_t cracks = 0, non_finite = 0, changing = 0;
   std::string where;
   for (const CrackRow& row : evaluation.cracks) {
@@ -70,7 +88,10 @@ void judge(const EvaluationInput& input, Evaluation& evaluation) {
   check_none("crack pixels under random vertex orders", cracks, evaluation.cracks.size(), where, checks);
   check_none("pictures that change from run to run", changing, evaluation.pictures.size(), "", checks);
   check_none("rays with NaN or Inf", non_finite, evaluation.rays.size(), "", checks);
-  checks.push_back({"validation and debug messages", fmt::format("{}{}", evaluation.messages.size(), evaluation.messages.empty() ? "" : ": " + evaluation.messages.front()), "0", evaluation.messages.empty()});
+  checks.push_back({"validation and debug messages",
+                    fmt::format("{}{}", evaluation.messages.size(),
+                                evaluation.messages.empty() ? "" : ": " + evaluation.messages.front()),
+                    "0", evaluation.messages.empty()});
 }
 
 }  // namespace relievo::cli

@@ -23,11 +23,14 @@ struct SceneRun {
 
 Result<RenderResult> draw(SceneRun& run, const std::string& stage, const std::string& technique) {
   RenderRequest request{stage, technique, HeightFilter::exact, Aov::color, run.input.values};
-  return render(run.backend, *run.input.registry, run.parts.scene, run.parts.mesh, run.maps, request, &run.evaluation.messages);
+  return render(run.backend, *run.input.registry, run.parts.scene, run.parts.mesh, run.maps, request,
+                &run.evaluation.messages);
 }
 
-std::string file_name(const SceneRun& run, const std::string& stage, const std::string& technique, const char* suffix = "") {
-  return fmt::format("{}-{}{}{}-{}{}.png", run.scene_name, stage, technique.empty() ? "" : "-", technique, run.backend.info().name, suffix);
+std::string file_name(const SceneRun& run, const std::string& stage, const std::string& technique,
+                      const char* suffix = "") {
+  return fmt::format("{}-{}{}{}-{}{}.png", run.scene_name, stage, technique.empty() ? "" : "-", technique,
+                     run.backend.info().name, suffix);
 }
 
 Status write_picture(const SceneRun& run, const std::string& file, const Pixels& pixels) {
@@ -49,7 +52,9 @@ Pixels amplify_difference(const Pixels& a, const Pixels& b) {
 Result<Pixels> run_picture(SceneRun& run, const std::string& stage, const std::string& technique) {
   Result<RenderResult> first = draw(run, stage, technique);
   if (!first) return tl::unexpected(first.error());
-  PictureRow row{run.scene_name, stage, technique, run.backend.info().name, "", "", first->seconds, true, first->degenerate_triangles};
+  PictureRow row{run.scene_name,          stage, technique,
+                 run.backend.info().name, "",    "",
+                 first->seconds,          true,  first->degenerate_triangles};
   for (int i = 1; i < run.input.repeats; ++i) {
     Result<RenderResult> again = draw(run, stage, technique);
     if (!again) return tl::unexpected(again.error());
@@ -57,7 +62,8 @@ Result<Pixels> run_picture(SceneRun& run, const std::string& stage, const std::s
     row.seconds = std::min(row.seconds, again->seconds);
   }
   if (!run.input.pictures.empty()) row.file = file_name(run, stage, technique);
-  if (Status status = write_picture(run, file_name(run, stage, technique), first->color); !status) return tl::unexpected(status.error());
+  if (Status status = write_picture(run, file_name(run, stage, technique), first->color); !status)
+    return tl::unexpected(status.error());
   run.evaluation.pictures.push_back(std::move(row));
   return std::move(first->color);
 }
@@ -68,8 +74,10 @@ struct Reference {
   Pixels pixels;
 };
 
-Status compare_with(SceneRun& run, const Reference& reference, const std::string& stage, const std::string& technique, const Pixels& pixels) {
-  run.evaluation.picture_agreements.push_back({run.scene_name, stage, technique, run.backend.info().name, reference.name, compare_images(pixels, reference.pixels)});
+Status compare_with(SceneRun& run, const Reference& reference, const std::string& stage, const std::string& technique,
+                    const Pixels& pixels) {
+  run.evaluation.picture_agreements.push_back({run.scene_name, stage, technique, run.backend.info().name,
+                                               reference.name, compare_images(pixels, reference.pixels)});
   if (run.input.pictures.empty()) return {};
   std::string file = file_name(run, stage, technique, "-difference");
   run.evaluation.pictures.back().difference_file = file;
@@ -77,19 +85,24 @@ Status compare_with(SceneRun& run, const Reference& reference, const std::string
 }
 
 /// Whether the oracle has a picture of the stage.
-bool is_replayed(const StageDescriptor& stage) { return stage.mesh == "base" || stage.mesh == "prisms"; }
+bool is_replayed(const StageDescriptor& stage) {
+  return stage.mesh == "base" || stage.mesh == "prisms";
+}
 
-/// The oracle's picture of the stage; of a tessellated mesh, the oracle's picture of the prisms, which describe the same surface.
+/// The oracle's picture of the stage; of a tessellated mesh, the oracle's picture of the prisms, which describe the
+/// same surface.
 Result<std::optional<Reference>> reference_for(SceneRun& run, const StageDescriptor& stage) {
   std::string drawn_by = is_replayed(stage) ? stage.name : "prism";
-  if (!run.input.registry->stages.contains(drawn_by) || !run.backend.info().features.contains("geometry")) return std::nullopt;
+  if (!run.input.registry->stages.contains(drawn_by) || !run.backend.info().features.contains("geometry"))
+    return std::nullopt;
   Result<RenderResult> result = draw(run, drawn_by, "oracle");
   if (!result) return tl::unexpected(result.error());
   if (is_replayed(stage)) {
     PictureRow row{run.scene_name, stage.name, "oracle", run.backend.info().name, "", "", result->seconds, true, 0};
     if (!run.input.pictures.empty()) row.file = file_name(run, stage.name, "oracle");
     run.evaluation.pictures.push_back(std::move(row));
-    if (Status status = write_picture(run, file_name(run, stage.name, "oracle"), result->color); !status) return tl::unexpected(status.error());
+    if (Status status = write_picture(run, file_name(run, stage.name, "oracle"), result->color); !status)
+      return tl::unexpected(status.error());
   }
   return Reference{"oracle", std::move(result->color)};
 }
@@ -99,8 +112,9 @@ using PicturesByCase = std::map<std::pair<std::string, std::string>, Pixels>;  /
 Status run_stage(SceneRun& run, const StageDescriptor& stage, PicturesByCase& pictures) {
   for (const std::string& feature : stage.features) {
     if (run.backend.info().features.contains(feature)) continue;
-    run.evaluation.not_run.push_back({fmt::format("stage {} of scene {} on {}", stage.name, run.scene_name, run.backend.info().name),
-                                      fmt::format("the driver lacks the feature '{}'", feature)});
+    run.evaluation.not_run.push_back(
+        {fmt::format("stage {} of scene {} on {}", stage.name, run.scene_name, run.backend.info().name),
+         fmt::format("the driver lacks the feature '{}'", feature)});
     return {};
   }
   Result<std::optional<Reference>> reference = reference_for(run, stage);
@@ -118,30 +132,35 @@ Status run_stage(SceneRun& run, const StageDescriptor& stage, PicturesByCase& pi
 }
 
 /// Silhouettes: every picture of the prisms against the finely displaced mesh.
-void compare_silhouettes(const std::string& scene, const std::string& backend, const PicturesByCase& pictures, Evaluation& evaluation) {
+void compare_silhouettes(const std::string& scene, const std::string& backend, const PicturesByCase& pictures,
+                         Evaluation& evaluation) {
   auto displaced = pictures.find({"vertex", ""});
   if (displaced == pictures.end()) return;
   for (const auto& [key, pixels] : pictures) {
     if (key.first != "prism") continue;
-    evaluation.picture_agreements.push_back({scene, key.first, key.second, backend, "vertex", compare_images(pixels, displaced->second)});
+    evaluation.picture_agreements.push_back(
+        {scene, key.first, key.second, backend, "vertex", compare_images(pixels, displaced->second)});
   }
 }
 
-void compare_backends(const std::string& scene, const std::map<std::string, PicturesByCase>& by_backend, Evaluation& evaluation) {
+void compare_backends(const std::string& scene, const std::map<std::string, PicturesByCase>& by_backend,
+                      Evaluation& evaluation) {
   if (by_backend.size() < 2) return;
   const auto& [left, first] = *by_backend.begin();
   for (auto other = std::next(by_backend.begin()); other != by_backend.end(); ++other) {
     for (const auto& [key, pixels] : first) {
       auto match = other->second.find(key);
       if (match == other->second.end()) continue;
-      evaluation.picture_agreements.push_back({scene, key.first, key.second, left, other->first, compare_images(pixels, match->second)});
+      evaluation.picture_agreements.push_back(
+          {scene, key.first, key.second, left, other->first, compare_images(pixels, match->second)});
     }
   }
 }
 
 }  // namespace
 
-Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress) {
+Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation,
+                         Progress& progress) {
   for (const auto& [name, parts] : input.scenes) {
     std::map<std::string, PicturesByCase> by_backend;
     for (auto& [backend_name, backend] : backends) {
@@ -160,22 +179,26 @@ Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, E
 
 namespace {
 
-Status count_scene_cracks(SceneRun& run, const std::string& stage, const Pixels& reference, const std::string& technique) {
+Status count_scene_cracks(SceneRun& run, const std::string& stage, const Pixels& reference,
+                          const std::string& technique) {
   constexpr std::uint64_t seeds = 3;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     Mesh shuffled = shuffle(run.parts.mesh, seed);
     RenderRequest request{stage, technique, HeightFilter::exact, Aov::color, run.input.values};
-    Result<RenderResult> result = render(run.backend, *run.input.registry, run.parts.scene, shuffled, run.maps, request, &run.evaluation.messages);
+    Result<RenderResult> result = render(run.backend, *run.input.registry, run.parts.scene, shuffled, run.maps, request,
+                                         &run.evaluation.messages);
     if (!result) return tl::unexpected(result.error());
     const SceneImage& size = run.parts.scene.image;
-    run.evaluation.cracks.push_back({run.scene_name, technique, run.backend.info().name, seed, count_cracks(result->color, reference, size.width, size.height)});
+    run.evaluation.cracks.push_back({run.scene_name, technique, run.backend.info().name, seed,
+                                     count_cracks(result->color, reference, size.width, size.height)});
   }
   return {};
 }
 
 }  // namespace
 
-Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress) {
+Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation,
+                       Progress& progress) {
   auto stage = input.registry->stages.find("prism");
   if (stage == input.registry->stages.end()) return {};
   for (const auto& [name, parts] : input.scenes) {

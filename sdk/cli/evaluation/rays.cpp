@@ -1,7 +1,7 @@
 /// The `ray` stage: every technique against the oracle, and the backends against each other.
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "evaluation/evaluation.hpp"
 #include "relievo/trace.hpp"
@@ -37,7 +37,8 @@ RayAgreement agree(const std::vector<Hit>& truth, const std::vector<Hit>& a, con
     double size = std::max(std::abs(a[i].t), std::abs(b[i].t));
     equal += a[i].status == b[i].status && std::abs(a[i].t - b[i].t) <= relative * size;
   }
-  agreement.equal_percent = agreement.judged ? 100.0 * static_cast<double>(equal) / static_cast<double>(agreement.judged) : 100.0;
+  agreement.equal_percent =
+      agreement.judged ? 100.0 * static_cast<double>(equal) / static_cast<double>(agreement.judged) : 100.0;
   return agreement;
 }
 
@@ -54,18 +55,26 @@ struct RayRun {
 Status run_backend(const RayRun& run, Backend& backend, Evaluation& evaluation, std::vector<TraceResult>& counted) {
   MapSet maps = map_set(run.ray_case.height);
   auto with_cost = requests(run.input, run.filter, run.ray_case.scale, true);
-  Result<std::vector<TraceResult>> result = trace(backend, *run.input.registry, maps, run.rays, with_cost, 1, &evaluation.messages);
+  Result<std::vector<TraceResult>> result =
+      trace(backend, *run.input.registry, maps, run.rays, with_cost, 1, &evaluation.messages);
   if (!result) return tl::unexpected(result.error());
   counted = std::move(*result);
   std::vector<TraceResult> timed;
   if (run.input.time) {
     auto bare = requests(run.input, run.filter, run.ray_case.scale, false);
-    Result<std::vector<TraceResult>> second = trace(backend, *run.input.registry, maps, run.rays, bare, run.input.repeats, &evaluation.messages);
+    Result<std::vector<TraceResult>> second =
+        trace(backend, *run.input.registry, maps, run.rays, bare, run.input.repeats, &evaluation.messages);
     if (!second) return tl::unexpected(second.error());
     timed = std::move(*second);
   }
   for (std::size_t k = 0; k < counted.size(); ++k) {
-    RayRow row{run.ray_case.name, run.input.techniques[k], backend.info().name, std::string(to_string(run.filter)), run.angle, {}, -1};
+    RayRow row{run.ray_case.name,
+               run.input.techniques[k],
+               backend.info().name,
+               std::string(to_string(run.filter)),
+               run.angle,
+               {},
+               -1};
     row.error = compare_hits(run.truth, counted[k].hits, run.ray_case.height.width, run.ray_case.height.height);
     if (!timed.empty()) row.seconds = median(timed[k].seconds);
     evaluation.rays.push_back(std::move(row));
@@ -101,7 +110,9 @@ Status evaluate_rays(const EvaluationInput& input, OpenBackends& backends, Evalu
       std::vector<Ray> rays = make_view_rays(angle, ray_case.scale, input.ray_image, input.ray_image);
       std::vector<Hit> truth = oracle.trace(rays);
       for (HeightFilter filter : {HeightFilter::exact, HeightFilter::hardware}) {
-        if (Status status = run_case({input, ray_case, angle, filter, rays, truth}, backends, evaluation, progress); !status) return status;
+        if (Status status = run_case({input, ray_case, angle, filter, rays, truth}, backends, evaluation, progress);
+            !status)
+          return status;
       }
     }
   }

@@ -26,25 +26,49 @@ nlohmann::json to_json(const Evaluation& e) {
   json result;
   result["schema"] = 1;
   result["backends"] = list(e.backends, [](const BackendInfo& b) {
-    return json{{"name", b.name}, {"title", b.title}, {"device", b.device}, {"driver", b.driver}, {"api_version", b.api_version}};
+    return json{{"name", b.name},
+                {"title", b.title},
+                {"device", b.device},
+                {"driver", b.driver},
+                {"api_version", b.api_version}};
   });
   result["rays"] = list(e.rays, [](const RayRow& r) {
     json row = to_json(r.error);
-    row.update({{"case", r.case_name}, {"technique", r.technique}, {"backend", r.backend}, {"filter", r.filter}, {"angle", r.angle}, {"steps", r.error.mean_steps}, {"fetches", r.error.mean_fetches}});
+    row.update({{"case", r.case_name},
+                {"technique", r.technique},
+                {"backend", r.backend},
+                {"filter", r.filter},
+                {"angle", r.angle},
+                {"steps", r.error.mean_steps},
+                {"fetches", r.error.mean_fetches}});
     if (r.seconds >= 0) row["seconds"] = r.seconds;
     return row;
   });
   result["ray_agreements"] = list(e.ray_agreements, [](const RayAgreement& r) {
-    return json{{"case", r.case_name}, {"technique", r.technique}, {"angle", r.angle}, {"judged", r.judged}, {"equal_percent", r.equal_percent}};
+    return json{{"case", r.case_name},
+                {"technique", r.technique},
+                {"angle", r.angle},
+                {"judged", r.judged},
+                {"equal_percent", r.equal_percent}};
   });
   result["pictures"] = list(e.pictures, [](const PictureRow& p) {
-    return json{{"scene", p.scene}, {"stage", p.stage}, {"technique", p.technique}, {"backend", p.backend}, {"file", p.file}, {"difference_file", p.difference_file}, {"seconds", p.seconds}, {"repeatable", p.repeatable}, {"degenerate_triangles", p.degenerate_triangles}};
+    return json{{"scene", p.scene},
+                {"stage", p.stage},
+                {"technique", p.technique},
+                {"backend", p.backend},
+                {"file", p.file},
+                {"difference_file", p.difference_file},
+                {"seconds", p.seconds},
+                {"repeatable", p.repeatable},
+                {"degenerate_triangles", p.degenerate_triangles}};
   });
   result["picture_agreements"] = list(e.picture_agreements, [](const PictureAgreement& p) {
-    return json{{"scene", p.scene}, {"stage", p.stage}, {"technique", p.technique}, {"left", p.left}, {"right", p.right}, {"difference", difference_json(p.difference)}};
+    return json{{"scene", p.scene}, {"stage", p.stage}, {"technique", p.technique},
+                {"left", p.left},   {"right", p.right}, {"difference", difference_json(p.difference)}};
   });
   result["cracks"] = list(e.cracks, [](const CrackRow& c) {
-    return json{{"scene", c.scene}, {"technique", c.technique}, {"backend", c.backend}, {"seed", c.seed}, {"cracks", c.cracks}};
+    return json{
+        {"scene", c.scene}, {"technique", c.technique}, {"backend", c.backend}, {"seed", c.seed}, {"cracks", c.cracks}};
   });
   result["messages"] = e.messages;
   result["checks"] = list(e.checks, [](const Check& c) {

@@ -14,8 +14,8 @@ namespace relievo {
 
 /// What a backend found on this machine.
 struct BackendInfo {
-  std::string name;    ///< "vulkan"
-  std::string title;   ///< "Vulkan 1.3"
+  std::string name;   ///< "vulkan"
+  std::string title;  ///< "Vulkan 1.3"
   bool available = false;
   std::string reason;  ///< why it is not available: one sentence
   std::string device, driver, api_version;
@@ -26,10 +26,10 @@ struct BackendInfo {
 };
 
 struct BackendOptions {
-  bool validation = false;   ///< Vulkan validation layer, OpenGL debug output: reported in JobResult::messages
-  std::string device;        ///< substring of the device to use; empty = the first suitable one
+  bool validation = false;     ///< Vulkan validation layer, OpenGL debug output: reported in JobResult::messages
+  std::string device;          ///< substring of the device to use; empty = the first suitable one
   std::string pipeline_cache;  ///< file of the Vulkan pipeline cache, read and written; empty = none
-  int fail_at_call = -1;     ///< null backend only: this call (0-based) fails
+  int fail_at_call = -1;       ///< null backend only: this call (0-based) fails
 };
 
 /// Executes Jobs. One object is used from one thread at a time.

@@ -43,8 +43,8 @@ struct CompiledShader {
 struct CompiledProgram {
   std::string key;
   std::vector<CompiledShader> shaders;
-  std::vector<BindingSlot> bindings;          ///< union over the shaders
-  std::string reflection;                     ///< JSON, schema in docs/reflection.md
+  std::vector<BindingSlot> bindings;  ///< union over the shaders
+  std::string reflection;             ///< JSON, schema in docs/reflection.md
 };
 
 struct CompileOptions {

@@ -37,18 +37,18 @@ struct Permutation {
 
 struct ComposedShader {
   ShaderStage stage = ShaderStage::compute;
-  std::string text;                 ///< complete Vulkan GLSL with #line directives to the author's files
-  std::vector<std::string> files;   ///< every source path in it, for depfiles
+  std::string text;                ///< complete Vulkan GLSL with #line directives to the author's files
+  std::vector<std::string> files;  ///< every source path in it, for depfiles
 };
 
 /// Where a parameter of the permutation lives.
 struct ParameterSlot {
-  std::string name;       ///< "relief.linear_steps"
+  std::string name;  ///< "relief.linear_steps"
   bool is_integer = false;
   BindingTime binding = BindingTime::uniform;
   double value = 0;
-  int constant_id = -1;   ///< specialization
-  int offset = -1;        ///< bytes in the Parameters block (set 0, binding 0, std140)
+  int constant_id = -1;  ///< specialization
+  int offset = -1;       ///< bytes in the Parameters block (set 0, binding 0, std140)
 };
 
 struct MapSlot {

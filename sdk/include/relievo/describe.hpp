@@ -25,15 +25,16 @@ struct Parameter {
   std::string name;
   std::string title;
   bool is_integer = false;
-  bool is_loop = false;    ///< an iteration bound
-  std::string unit;        ///< "steps", "texels", "1", …
+  bool is_loop = false;                        ///< an iteration bound
+  std::string unit;                            ///< "steps", "texels", "1", …
   double minimum = 0, maximum = 0, value = 0;  ///< range and default
   BindingTime binding = BindingTime::uniform;
-  std::string file; int line = 0;  ///< where it was declared
+  std::string file;
+  int line = 0;  ///< where it was declared
 };
 
-/// The survey's classes (§4): does it guarantee the first hit? `reference` is ours: not an algorithm but what others are
-/// judged by; sweeps over all techniques leave it out.
+/// The survey's classes (§4): does it guarantee the first hit? `reference` is ours: not an algorithm but what others
+/// are judged by; sweeps over all techniques leave it out.
 enum class TechniqueClass { non_iterative, unsafe, quasi_safe, safe, combined, reference };
 std::string_view to_string(TechniqueClass value);
 
@@ -49,30 +50,30 @@ struct TechniqueDescriptor {
   std::string name, title, source, summary;
   TechniqueClass technique_class = TechniqueClass::unsafe;
   FirstHit first_hit = FirstHit::never;
-  std::vector<std::string> maps;       ///< names of the maps it reads, "height" included
-  std::vector<Parameter> parameters;   ///< loops first, then the others
+  std::vector<std::string> maps;      ///< names of the maps it reads, "height" included
+  std::vector<Parameter> parameters;  ///< loops first, then the others
   FeatureSet features;
-  std::string module;                  ///< source path of its GLSL in the registry's tree
-  std::string file;                    ///< source path of the descriptor
+  std::string module;  ///< source path of its GLSL in the registry's tree
+  std::string file;    ///< source path of the descriptor
 };
 
-/// `single`: as large as the height map. `pyramid`: the next powers of two, with every level down to 1×1; level k is baked
-/// from level k − 1.
+/// `single`: as large as the height map. `pyramid`: the next powers of two, with every level down to 1×1; level k is
+/// baked from level k − 1.
 enum class MapLevels { single, pyramid };
 std::string_view to_string(MapLevels levels);
 
 /// A map baked by a compute module: reads its inputs, writes `channels` floats a texel.
 struct MapDescriptor {
   std::string name, title, source, summary;
-  std::vector<std::string> inputs;     ///< other maps; empty for `height`, which the caller provides
-  int channels = 1;                    ///< 1–4
+  std::vector<std::string> inputs;  ///< other maps; empty for `height`, which the caller provides
+  int channels = 1;                 ///< 1–4
   MapLevels levels = MapLevels::single;
-  std::string sampler;                 ///< GLSL name, e.g. "relievo_height_map"
-  int set = 1, binding = 0;            ///< the binding contract; unique among maps
+  std::string sampler;       ///< GLSL name, e.g. "relievo_height_map"
+  int set = 1, binding = 0;  ///< the binding contract; unique among maps
   std::vector<Parameter> parameters;
   FeatureSet features;
-  std::string module;                  ///< compute shader; empty for provided maps
-  std::string access;                  ///< GLSL included wherever the map is bound: its sampling functions; may be empty
+  std::string module;  ///< compute shader; empty for provided maps
+  std::string access;  ///< GLSL included wherever the map is bound: its sampling functions; may be empty
   std::string file;
 };
 
@@ -84,17 +85,18 @@ struct StageShader {
 /// A stage hosts a technique's trace (roles non-empty) or displaces geometry itself (roles empty).
 struct StageDescriptor {
   std::string name, title, source, summary;
-  std::vector<StageShader> shaders;     ///< in pipeline order
-  std::vector<std::string> roles;       ///< "view", …
-  std::vector<std::string> maps;        ///< maps the stage itself reads, e.g. "normal" for shading
+  std::vector<StageShader> shaders;  ///< in pipeline order
+  std::vector<std::string> roles;    ///< "view", …
+  std::vector<std::string> maps;     ///< maps the stage itself reads, e.g. "normal" for shading
   std::vector<Parameter> parameters;
   FeatureSet features;
-  std::string fallback;                 ///< the stage to use where a feature is missing; may be empty
-  std::string mesh;                     ///< what geometry it draws: "none" (compute), "base", "tessellated", "prisms"
+  std::string fallback;  ///< the stage to use where a feature is missing; may be empty
+  std::string mesh;      ///< what geometry it draws: "none" (compute), "base", "tessellated", "prisms"
   std::string file;
 };
 
-/// Every file of the SDK and of the user's folders by source path ("shaders/lib/ray.glsl"): what the composer may include.
+/// Every file of the SDK and of the user's folders by source path ("shaders/lib/ray.glsl"): what the composer may
+/// include.
 using SourceTree = std::map<std::string, std::string, std::less<>>;
 
 struct Registry {

@@ -20,9 +20,18 @@ std::string_view to_string(ShaderStage stage);
 
 /// Texel and vertex formats. `unorm` maps 0..max to [0,1].
 enum class Format {
-  r8_unorm, rg8_unorm, rgb8_unorm, rgba8_unorm,
-  r16_unorm, rg16_unorm, rgb16_unorm, rgba16_unorm,
-  r32_float, rg32_float, rgb32_float, rgba32_float,
+  r8_unorm,
+  rg8_unorm,
+  rgb8_unorm,
+  rgba8_unorm,
+  r16_unorm,
+  rg16_unorm,
+  rgb16_unorm,
+  rgba16_unorm,
+  r32_float,
+  rg32_float,
+  rgb32_float,
+  rgba32_float,
   r32_uint,
   d32_float,
 };
@@ -106,7 +115,7 @@ enum class CullMode { none, back, front };
 struct VertexAttribute {
   int location = 0;
   Format format = Format::rgb32_float;  ///< a 32-bit format
-  int offset = 0;                        ///< bytes
+  int offset = 0;                       ///< bytes
 };
 
 /// One pass over its targets: optionally clears, then draws triangles. Depth is in [0,1], smaller is nearer; depth test
@@ -118,8 +127,8 @@ struct Draw {
   int vertex_buffer = 0;
   int vertex_stride = 0;  ///< bytes
   std::vector<VertexAttribute> attributes;
-  int index_buffer = -1;      ///< 32-bit indices; −1 = not indexed
-  std::uint32_t count = 0;    ///< vertices, or indices
+  int index_buffer = -1;    ///< 32-bit indices; −1 = not indexed
+  std::uint32_t count = 0;  ///< vertices, or indices
   std::uint32_t instances = 1;
   std::vector<int> color_targets;  ///< textures, location = position in the list
   int depth_target = -1;           ///< texture, or −1

@@ -37,7 +37,8 @@ MapSet map_set(const HeightMap& height_map);
 
 /// Bakes `map` and whatever it needs first into `maps`, which holds "height"; maps that are there already stay.
 /// `values` are keyed "map.parameter"; those of other owners are ignored.
-/// Errors: "describe.unknown-map", "compose.*", "compile.*", "backend.*"; "maps.non-finite" if the result is not finite.
+/// Errors: "describe.unknown-map", "compose.*", "compile.*", "backend.*"; "maps.non-finite" if the result is not
+/// finite.
 Status bake_map(Backend& backend, const Registry& registry, std::string_view map, MapSet& maps,
                 const std::map<std::string, double>& values = {}, std::vector<std::string>* messages = nullptr);
 

@@ -14,19 +14,21 @@ struct ErrorQuantiles {
 };
 
 struct ErrorFigures {
-  std::uint64_t rays = 0;       ///< all rays given
-  std::uint64_t ambiguous = 0;  ///< set apart: not counted below
-  std::uint64_t judged = 0;     ///< rays − ambiguous − those on which the oracle itself is exhausted
-  std::uint64_t missed = 0;      ///< oracle hits, technique says miss or outside
-  std::uint64_t false_hit = 0;   ///< technique hits, oracle does not
-  std::uint64_t wrong_layer = 0; ///< both hit, more than 1 texel in uv or 0.02 in H apart
-  std::uint64_t exhausted = 0;   ///< technique ran out of steps
-  std::uint64_t non_finite = 0;  ///< NaN or Inf in any output
-  ErrorQuantiles uv_texels;      ///< |Δuv| in texels (max norm over the axes)
-  ErrorQuantiles height;         ///< |ΔH|
+  std::uint64_t rays = 0;         ///< all rays given
+  std::uint64_t ambiguous = 0;    ///< set apart: not counted below
+  std::uint64_t judged = 0;       ///< rays − ambiguous − those on which the oracle itself is exhausted
+  std::uint64_t missed = 0;       ///< oracle hits, technique says miss or outside
+  std::uint64_t false_hit = 0;    ///< technique hits, oracle does not
+  std::uint64_t wrong_layer = 0;  ///< both hit, more than 1 texel in uv or 0.02 in H apart
+  std::uint64_t exhausted = 0;    ///< technique ran out of steps
+  std::uint64_t non_finite = 0;   ///< NaN or Inf in any output
+  ErrorQuantiles uv_texels;       ///< |Δuv| in texels (max norm over the axes)
+  ErrorQuantiles height;          ///< |ΔH|
   double mean_steps = 0, mean_fetches = 0;
 
-  double percent(std::uint64_t count) const { return judged ? 100.0 * static_cast<double>(count) / static_cast<double>(judged) : 0.0; }
+  double percent(std::uint64_t count) const {
+    return judged ? 100.0 * static_cast<double>(count) / static_cast<double>(judged) : 0.0;
+  }
   /// missed + false + wrong-layer, percent of judged rays.
   double wrong_percent() const { return percent(missed + false_hit + wrong_layer); }
 };
@@ -47,7 +49,7 @@ struct ImageDifference {
 ImageDifference compare_images(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b);
 
 /// Pixels that `image` leaves empty although `reference` draws them and all pixels within `margin` around them: cracks.
-std::uint64_t count_cracks(std::span<const std::uint8_t> image, std::span<const std::uint8_t> reference, int width, int height,
-                           int margin = 2);
+std::uint64_t count_cracks(std::span<const std::uint8_t> image, std::span<const std::uint8_t> reference, int width,
+                           int height, int margin = 2);
 
 }  // namespace relievo

@@ -39,14 +39,14 @@ struct Hit {
 };
 
 struct OracleOptions {
-  unsigned threads = 0;          ///< 0 = all
-  double ambiguity = 1e-5;       ///< in H
+  unsigned threads = 0;                ///< 0 = all
+  double ambiguity = 1e-5;             ///< in H
   std::uint64_t max_cells = 1u << 24;  ///< a ray that crosses more cells is `exhausted`
 };
 
 /// First hit of one ray. The surface exists where H ≤ h(u,v): t is the smallest t ≥ 0 with H(t) ≤ h(u(t),v(t)), closed.
-/// Non-finite or zero-length rays are `miss` at t = 0. With `clip`, entering the domain below the surface is a hit at the entry.
-/// A ray that starts with H < h strictly is `inside`; H = h is a hit at t = 0.
+/// Non-finite or zero-length rays are `miss` at t = 0. With `clip`, entering the domain below the surface is a hit at
+/// the entry. A ray that starts with H < h strictly is `inside`; H = h is a hit at t = 0.
 class Oracle {
  public:
   /// Keeps a reference-free copy of what it needs; O(W·H) set-up.
@@ -56,7 +56,8 @@ class Oracle {
   Oracle& operator=(Oracle&&) noexcept;
 
   Hit trace(const Ray& ray) const;
-  /// Traces all rays on options.threads threads; the result has one hit a ray, in order, independent of the thread count.
+  /// Traces all rays on options.threads threads; the result has one hit a ray, in order, independent of the thread
+  /// count.
   std::vector<Hit> trace(std::span<const Ray> rays) const;
 
  private:

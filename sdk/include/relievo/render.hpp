@@ -23,9 +23,9 @@ struct RenderRequest {
 };
 
 struct RenderResult {
-  Image image;                        ///< 4 channels; alpha 1 where something was drawn. colour: [0,1]; others: see Aov
-  std::vector<std::uint8_t> color;    ///< aov color only: the 8-bit pixels as the backend wrote them
-  double seconds = -1;                ///< of the draw, by the GPU's clock; −1 without timestamps
+  Image image;                      ///< 4 channels; alpha 1 where something was drawn. colour: [0,1]; others: see Aov
+  std::vector<std::uint8_t> color;  ///< aov color only: the 8-bit pixels as the backend wrote them
+  double seconds = -1;              ///< of the draw, by the GPU's clock; −1 without timestamps
   std::uint64_t degenerate_triangles = 0;  ///< drawn undisplaced
 };
 
@@ -34,7 +34,7 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
                             const RenderRequest& request, std::string_view shader_target);
 
 /// Bakes what is missing in `maps`, makes the job and runs it.
-Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh, MapSet& maps,
-                            const RenderRequest& request, std::vector<std::string>* messages = nullptr);
+Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
+                            MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages = nullptr);
 
 }  // namespace relievo

@@ -16,7 +16,7 @@ namespace relievo {
 struct TraceRequest {
   std::string technique;
   HeightFilter filter = HeightFilter::exact;
-  bool count_cost = true;               ///< count steps and fetches; off for timing
+  bool count_cost = true;                ///< count steps and fetches; off for timing
   std::map<std::string, double> values;  ///< "owner.parameter"; those of other owners are ignored
 };
 
@@ -46,9 +46,9 @@ std::vector<TraceResult> read_trace(const Job& job, const JobResult& result, std
                                     AddressMode address, std::size_t requests);
 
 /// Bakes what is missing in `maps`, makes the job and runs it. `messages` receives validation and debug output.
-Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registry, MapSet& maps, std::span<const Ray> rays,
-                                       std::span<const TraceRequest> requests, int repeats = 1,
-                                       std::vector<std::string>* messages = nullptr);
+Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registry, MapSet& maps,
+                                       std::span<const Ray> rays, std::span<const TraceRequest> requests,
+                                       int repeats = 1, std::vector<std::string>* messages = nullptr);
 
 /// An image of rays that look down at `angle` degrees above the base plane on a map whose lid is `scale` texture widths
 /// high, with a little perspective: `width`×`height` rays, row by row, each starting on the lid.

@@ -19,9 +19,9 @@ spvtools::MessageConsumer collect_into(std::string& messages) {
   };
 }
 
-/// Removes what a permutation does not use and what is decided at compile time. Functions stay functions: drivers inline
-/// by themselves, and the emitted text keeps the author's structure, at a third of the size and time. Nothing rewrites
-/// arithmetic: contracting a·b+c into fma would let targets disagree about a hit.
+/// Removes what a permutation does not use and what is decided at compile time. Functions stay functions: drivers
+/// inline by themselves, and the emitted text keeps the author's structure, at a third of the size and time. Nothing
+/// rewrites arithmetic: contracting a·b+c into fma would let targets disagree about a hit.
 void register_passes(spvtools::Optimizer& optimizer) {
   optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
       .RegisterPass(spvtools::CreateDeadBranchElimPass())

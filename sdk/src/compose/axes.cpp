@@ -1,6 +1,6 @@
 /// The axes of a permutation and their names.
-#include <array>
 #include <fmt/format.h>
+#include <array>
 
 #include "relievo/compose.hpp"
 
@@ -26,14 +26,20 @@ Result<Enum> parse(std::string_view name, const std::array<std::string_view, N>&
 
 }  // namespace
 
-std::string_view to_string(HeightFilter filter) { return filter_names[static_cast<std::size_t>(filter)]; }
-std::string_view to_string(Aov aov) { return aov_names[static_cast<std::size_t>(aov)]; }
+std::string_view to_string(HeightFilter filter) {
+  return filter_names[static_cast<std::size_t>(filter)];
+}
+std::string_view to_string(Aov aov) {
+  return aov_names[static_cast<std::size_t>(aov)];
+}
 
 Result<HeightFilter> parse_height_filter(std::string_view name) {
   return parse<HeightFilter>(name, filter_names, "filter");
 }
 
-Result<Aov> parse_aov(std::string_view name) { return parse<Aov>(name, aov_names, "aov"); }
+Result<Aov> parse_aov(std::string_view name) {
+  return parse<Aov>(name, aov_names, "aov");
+}
 
 std::string Permutation::key() const {
   std::string key = stage;

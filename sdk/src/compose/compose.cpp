@@ -1,7 +1,7 @@
 #include "relievo/compose.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "compose/include.hpp"
 #include "compose/parameters.hpp"
@@ -23,7 +23,8 @@ void add_once(std::vector<T>& list, T value) {
   if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
 }
 
-Status add_maps(const Registry& registry, const std::vector<std::string>& names, std::vector<const MapDescriptor*>& maps) {
+Status add_maps(const Registry& registry, const std::vector<std::string>& names,
+                std::vector<const MapDescriptor*>& maps) {
   for (const std::string& name : names) {
     Result<const MapDescriptor*> map = registry.map(name);
     if (!map) return tl::unexpected(map.error());
@@ -64,7 +65,8 @@ Result<Parts> resolve(const Registry& registry, const Permutation& permutation) 
     if (parts.roles.contains(role)) continue;
     return fail(ErrorCode::usage, "compose.role-unknown",
                 fmt::format("stage '{}' has no role '{}'; expected {}", permutation.stage, role,
-                            (*stage)->roles.empty() ? "none: it traces nothing" : fmt::format("{}", fmt::join((*stage)->roles, ", "))));
+                            (*stage)->roles.empty() ? "none: it traces nothing"
+                                                    : fmt::format("{}", fmt::join((*stage)->roles, ", "))));
   }
   sort_by_binding(parts.maps);
   return parts;
@@ -73,7 +75,8 @@ Result<Parts> resolve(const Registry& registry, const Permutation& permutation) 
 std::vector<ParameterOwner> owners_of(const Parts& parts) {
   std::vector<ParameterOwner> owners;
   if (parts.stage) owners.push_back({parts.stage->name, &parts.stage->parameters});
-  for (const TechniqueDescriptor* technique : parts.techniques) owners.push_back({technique->name, &technique->parameters});
+  for (const TechniqueDescriptor* technique : parts.techniques)
+    owners.push_back({technique->name, &technique->parameters});
   for (const MapDescriptor* map : parts.maps) owners.push_back({map->name, &map->parameters});
   return owners;
 }
@@ -83,7 +86,8 @@ std::string axis_macros(HeightFilter filter, AddressMode address, bool count, Ao
   std::string text = "#version 450\n#extension GL_GOOGLE_cpp_style_line_directive : require\n";
   constexpr const char* address_names[] = {"REPEAT", "MIRROR", "CLAMP", "CLIP"};
   for (int i = 0; i < 4; ++i) text += fmt::format("#define RELIEVO_ADDRESS_{} {}\n", address_names[i], i);
-  constexpr const char* aov_names[] = {"COLOR", "DEPTH", "NORMAL", "UV", "STEPS", "STATUS", "RAY_ORIGIN", "RAY_DIRECTION"};
+  constexpr const char* aov_names[] = {"COLOR", "DEPTH",  "NORMAL",     "UV",
+                                       "STEPS", "STATUS", "RAY_ORIGIN", "RAY_DIRECTION"};
   for (int i = 0; i < 8; ++i) text += fmt::format("#define RELIEVO_AOV_{} {}\n", aov_names[i], i);
   text += fmt::format("#define RELIEVO_ADDRESS {}\n", static_cast<int>(address));
   text += fmt::format("#define RELIEVO_FILTER_EXACT {}\n", filter == HeightFilter::exact ? 1 : 0);
@@ -95,7 +99,8 @@ std::string axis_macros(HeightFilter filter, AddressMode address, bool count, Ao
 Result<std::string> declare_maps(const std::vector<const MapDescriptor*>& maps, SourceExpander& expander) {
   std::string text;
   for (const MapDescriptor* map : maps) {
-    text += fmt::format("layout(set = {}, binding = {}) uniform highp sampler2D {};\n", map->set, map->binding, map->sampler);
+    text += fmt::format("layout(set = {}, binding = {}) uniform highp sampler2D {};\n", map->set, map->binding,
+                        map->sampler);
     if (map->access.empty()) continue;
     Result<std::string> access = expander.expand(map->access);
     if (!access) return access;
@@ -138,7 +143,8 @@ Result<ComposedShader> compose_shader(const Registry& registry, const Parts& all
     if (!module) return tl::unexpected(module.error());
     text += *module;
   }
-  for (const auto& [role, technique] : used.roles) text += fmt::format("#define relievo_{}_trace {}_trace\n", role, technique->name);
+  for (const auto& [role, technique] : used.roles)
+    text += fmt::format("#define relievo_{}_trace {}_trace\n", role, technique->name);
   Result<std::string> module = expander.expand(shader.module);
   if (!module) return tl::unexpected(module.error());
   text += *module;
@@ -158,7 +164,8 @@ FeatureSet features_of(const Parts& parts) {
 Result<ComposedProgram> compose(const Registry& registry, const Permutation& permutation) {
   Result<Parts> parts = resolve(registry, permutation);
   if (!parts) return tl::unexpected(parts.error());
-  Result<std::vector<ParameterSlot>> slots = assign_parameters(owners_of(*parts), permutation.values, permutation.binding_times);
+  Result<std::vector<ParameterSlot>> slots =
+      assign_parameters(owners_of(*parts), permutation.values, permutation.binding_times);
   if (!slots) return tl::unexpected(slots.error());
 
   ComposedProgram program;
@@ -167,7 +174,8 @@ Result<ComposedProgram> compose(const Registry& registry, const Permutation& per
   program.parameters = *slots;
   program.parameter_block_size = parameter_block_size(*slots);
   program.features = features_of(*parts);
-  for (const MapDescriptor* map : parts->maps) program.maps.push_back({map->name, map->sampler, map->set, map->binding});
+  for (const MapDescriptor* map : parts->maps)
+    program.maps.push_back({map->name, map->sampler, map->set, map->binding});
   bool count = permutation.count_cost || permutation.aov == Aov::steps;
   std::string macros = axis_macros(permutation.filter, permutation.address, count, permutation.aov);
   for (const StageShader& shader : parts->stage->shaders) {
@@ -183,7 +191,8 @@ Result<ComposedProgram> compose_bake(const Registry& registry, std::string_view 
   Result<const MapDescriptor*> map = registry.map(map_name);
   if (!map) return tl::unexpected(map.error());
   if ((*map)->module.empty()) {
-    return fail(ErrorCode::usage, "compose.provided-map", fmt::format("map '{}' is given by the caller: there is nothing to bake", map_name));
+    return fail(ErrorCode::usage, "compose.provided-map",
+                fmt::format("map '{}' is given by the caller: there is nothing to bake", map_name));
   }
   std::vector<const MapDescriptor*> inputs;
   if (Status status = add_maps(registry, (*map)->inputs, inputs); !status) return tl::unexpected(status.error());
@@ -199,7 +208,8 @@ Result<ComposedProgram> compose_bake(const Registry& registry, std::string_view 
   program.parameters = *slots;
   program.parameter_block_size = parameter_block_size(*slots);
   program.features = (*map)->features;
-  for (const MapDescriptor* input : inputs) program.maps.push_back({input->name, input->sampler, input->set, input->binding});
+  for (const MapDescriptor* input : inputs)
+    program.maps.push_back({input->name, input->sampler, input->set, input->binding});
 
   SourceExpander expander(registry.sources);
   std::string text = axis_macros(HeightFilter::exact, address, false, Aov::color) + declare_parameters(*slots);

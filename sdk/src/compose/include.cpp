@@ -1,8 +1,8 @@
 #include "compose/include.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
-#include <fmt/format.h>
 #include <optional>
 
 namespace relievo {
@@ -38,7 +38,8 @@ Result<std::string> SourceExpander::resolve(const std::string& includer, int lin
   if (shared.starts_with("shaders/lib/") && tree_.contains(shared)) return shared;
   if (escapes) {
     return fail(ErrorCode::compile, "compose.include-escapes",
-                fmt::format("#include \"{}\" leaves the folder '{}'; expected a file of that folder or of shaders/lib/", name, folder),
+                fmt::format("#include \"{}\" leaves the folder '{}'; expected a file of that folder or of shaders/lib/",
+                            name, folder),
                 includer, line, 1);
   }
   std::vector<std::string> known;
@@ -73,8 +74,8 @@ Status SourceExpander::append(const std::string& path, std::string& text) {
     if (!target) return tl::unexpected(target.error());
     if (std::find(open_.begin(), open_.end(), *target) != open_.end()) {
       return fail(ErrorCode::compile, "compose.include-cycle",
-                  fmt::format("#include \"{}\" includes itself: {} -> {}", *name, fmt::join(open_, " -> "), *target), path,
-                  line, 1);
+                  fmt::format("#include \"{}\" includes itself: {} -> {}", *name, fmt::join(open_, " -> "), *target),
+                  path, line, 1);
     }
     if (Status status = append(*target, text); !status) return status;
     text += fmt::format("#line {} \"{}\"\n", line + 1, path);
@@ -85,7 +86,8 @@ Status SourceExpander::append(const std::string& path, std::string& text) {
 
 Result<std::string> SourceExpander::expand(const std::string& path) {
   if (!tree_.contains(path)) {
-    return fail(ErrorCode::compile, "compose.missing-module", fmt::format("module '{}' is not in the source tree", path), path);
+    return fail(ErrorCode::compile, "compose.missing-module",
+                fmt::format("module '{}' is not in the source tree", path), path);
   }
   std::string text;
   if (Status status = append(path, text); !status) return tl::unexpected(status.error());

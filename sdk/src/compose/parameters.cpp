@@ -1,9 +1,9 @@
 #include "compose/parameters.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fmt/format.h>
 
 namespace relievo {
 
@@ -91,7 +91,8 @@ std::string declare_parameters(const std::vector<ParameterSlot>& slots) {
         constants += fmt::format("#define {} {}\n", name, slot.value < 0 ? "(" + literal(slot) + ")" : literal(slot));
         break;
       case BindingTime::specialization:
-        constants += fmt::format("layout(constant_id = {}) const {} {} = {};\n", slot.constant_id, type, name, literal(slot));
+        constants +=
+            fmt::format("layout(constant_id = {}) const {} {} = {};\n", slot.constant_id, type, name, literal(slot));
         break;
       case BindingTime::uniform:
         members += fmt::format("  {} {};\n", type, name);

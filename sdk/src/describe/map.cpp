@@ -37,8 +37,8 @@ void read_binding(TomlReader& reader, MapDescriptor& map) {
 }
 
 void read_map(TomlReader& reader, MapDescriptor& map) {
-  reader.allow_keys({"schema", "name", "title", "source", "summary", "inputs", "channels", "levels", "sampler", "binding",
-                     "module", "access", "features", "loops", "parameters"});
+  reader.allow_keys({"schema", "name", "title", "source", "summary", "inputs", "channels", "levels", "sampler",
+                     "binding", "module", "access", "features", "loops", "parameters"});
   map.inputs = reader.names("inputs");
   map.channels = reader.integer("channels", 1, 4);
   map.levels = reader.choice_of<MapLevels>("levels", level_names, MapLevels::single);
@@ -55,7 +55,9 @@ void read_map(TomlReader& reader, MapDescriptor& map) {
 
 }  // namespace
 
-std::string_view to_string(MapLevels levels) { return level_names[static_cast<std::size_t>(levels)]; }
+std::string_view to_string(MapLevels levels) {
+  return level_names[static_cast<std::size_t>(levels)];
+}
 
 Result<MapDescriptor> parse_map(std::string_view text, const std::string& path) {
   return parse_descriptor<MapDescriptor>(text, path, "map", read_map);

@@ -8,7 +8,9 @@ namespace relievo {
 
 namespace {
 
-glm::vec3 to_vec3(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+glm::vec3 to_vec3(const std::array<float, 3>& a) {
+  return {a[0], a[1], a[2]};
+}
 
 }  // namespace
 

@@ -9,7 +9,9 @@ namespace relievo {
 
 namespace {
 
-glm::vec3 to_vec3(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+glm::vec3 to_vec3(const std::array<float, 3>& a) {
+  return {a[0], a[1], a[2]};
+}
 
 /// Every triangle with three vertices of its own.
 Mesh explode(const Mesh& mesh) {
@@ -68,7 +70,8 @@ MeshBuffers make_mesh_buffers(const Mesh& mesh, DisplacementUnits units, int tes
   for (std::size_t t = 0; t < pieces.triangles.size(); ++t) {
     const TriangleFrame& frame = frames[t / per_triangle];
     for (std::uint32_t v : pieces.triangles[t]) {
-      buffers.vertices[v] = {pieces.positions[v], pieces.normals[v], pieces.uvs[v], frame.tangent, frame.bitangent, weld[v]};
+      buffers.vertices[v] = {pieces.positions[v], pieces.normals[v], pieces.uvs[v],
+                             frame.tangent,       frame.bitangent,   weld[v]};
       buffers.indices.push_back(v);
     }
   }
@@ -76,9 +79,11 @@ MeshBuffers make_mesh_buffers(const Mesh& mesh, DisplacementUnits units, int tes
 }
 
 std::vector<VertexAttribute> mesh_attributes(bool welded) {
-  std::vector<VertexAttribute> attributes = {{0, Format::rgb32_float, offsetof(MeshVertex, position)}, {1, Format::rgb32_float, offsetof(MeshVertex, extrusion)},
-          {2, Format::rg32_float, offsetof(MeshVertex, uv)},        {3, Format::rgb32_float, offsetof(MeshVertex, tangent)},
-          {4, Format::rgb32_float, offsetof(MeshVertex, bitangent)}};
+  std::vector<VertexAttribute> attributes = {{0, Format::rgb32_float, offsetof(MeshVertex, position)},
+                                             {1, Format::rgb32_float, offsetof(MeshVertex, extrusion)},
+                                             {2, Format::rg32_float, offsetof(MeshVertex, uv)},
+                                             {3, Format::rgb32_float, offsetof(MeshVertex, tangent)},
+                                             {4, Format::rgb32_float, offsetof(MeshVertex, bitangent)}};
   if (welded) attributes.push_back({5, Format::r32_uint, offsetof(MeshVertex, weld)});
   return attributes;
 }

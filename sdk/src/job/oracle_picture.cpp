@@ -21,15 +21,17 @@ using glm::dvec4;
 
 constexpr int base_face = 3;  // of the tetrahedron a b c C: opposite its lid corner
 
-glm::dvec3 to_dvec3(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+glm::dvec3 to_dvec3(const std::array<float, 3>& a) {
+  return {a[0], a[1], a[2]};
+}
 
 /// A tetrahedron of a prism as an affine map: distances λ(p) to its faces, and the texture point Σ λ_k point_k.
 struct Tetrahedron {
   int cell = 0;
   bool has_base = false;
   std::array<dvec3, 4> positions, points;
-  dvec4 eye;                         // λ of the eye
-  std::array<dvec3, 4> gradients;    // of λ
+  dvec4 eye;                                     // λ of the eye
+  std::array<dvec3, 4> gradients;                // of λ
   int left = 0, right = 0, top = 0, bottom = 0;  // pixels that it may cover, inclusive
 
   dvec3 point(const dvec4& w) const { return w.x * points[0] + w.y * points[1] + w.z * points[2] + w.w * points[3]; }
@@ -40,7 +42,8 @@ struct CornerOf {
   int vertex;
   int lid;
 };
-constexpr CornerOf corners_of[3][4] = {{{0, 0}, {1, 0}, {2, 0}, {2, 1}}, {{0, 0}, {1, 0}, {1, 1}, {2, 1}}, {{0, 0}, {0, 1}, {1, 1}, {2, 1}}};
+constexpr CornerOf corners_of[3][4] = {
+    {{0, 0}, {1, 0}, {2, 0}, {2, 1}}, {{0, 0}, {1, 0}, {1, 1}, {2, 1}}, {{0, 0}, {0, 1}, {1, 1}, {2, 1}}};
 
 bool set_distances(Tetrahedron& t, const dvec3& eye) {
   glm::dmat3 edges(t.positions[1] - t.positions[0], t.positions[2] - t.positions[0], t.positions[3] - t.positions[0]);
@@ -48,7 +51,8 @@ bool set_distances(Tetrahedron& t, const dvec3& eye) {
   glm::dmat3 rows = glm::transpose(glm::inverse(edges));
   t.gradients = {-(rows[0] + rows[1] + rows[2]), rows[0], rows[1], rows[2]};
   dvec3 offset = eye - t.positions[0];
-  t.eye = {1 + glm::dot(t.gradients[0], offset), glm::dot(rows[0], offset), glm::dot(rows[1], offset), glm::dot(rows[2], offset)};
+  t.eye = {1 + glm::dot(t.gradients[0], offset), glm::dot(rows[0], offset), glm::dot(rows[1], offset),
+           glm::dot(rows[2], offset)};
   return std::isfinite(t.eye.x + t.eye.y + t.eye.z + t.eye.w);
 }
 
@@ -64,7 +68,9 @@ void set_bounds(Tetrahedron& t, const glm::dmat4& projection, const SceneImage& 
     low = glm::min(low, pixel);
     high = glm::max(high, pixel);
   }
-  auto clamp = [](double value, int most) { return static_cast<int>(std::clamp(value, -1.0, static_cast<double>(most))); };
+  auto clamp = [](double value, int most) {
+    return static_cast<int>(std::clamp(value, -1.0, static_cast<double>(most)));
+  };
   t.left = std::max(0, clamp(std::floor(low.x), image.width));
   t.top = std::max(0, clamp(std::floor(low.y), image.height));
   t.right = std::min(t.right, clamp(std::ceil(high.x), image.width));
@@ -86,7 +92,8 @@ std::vector<Tetrahedron> make_tetrahedra(const Scene& scene, const Mesh& mesh) {
       for (std::size_t k = 0; k < 4; ++k) {
         const MeshVertex& v = *order[static_cast<std::size_t>(corners_of[i][k].vertex)];
         double lid = corners_of[i][k].lid;
-        double displacement = static_cast<double>(scene.displacement.bias) + static_cast<double>(scene.displacement.scale) * lid;
+        double displacement =
+            static_cast<double>(scene.displacement.bias) + static_cast<double>(scene.displacement.scale) * lid;
         t.positions[k] = to_dvec3(v.position) + to_dvec3(v.extrusion) * displacement;
         t.points[k] = {v.uv[0], v.uv[1], lid};
       }
@@ -124,12 +131,18 @@ std::optional<Segment> cross(const Tetrahedron& t, const dvec3& view) {
   dvec3 origin = t.point(t.eye + segment.enter * change);
   dvec3 direction = t.point(change) * (segment.leave - segment.enter);
   bool falls_out = t.has_base && leaving_face == base_face && direction.z < 0;
-  segment.ray = {origin.x, origin.y, std::clamp(origin.z, 0.0, 1.0), direction.x, direction.y, direction.z,
+  segment.ray = {origin.x,
+                 origin.y,
+                 std::clamp(origin.z, 0.0, 1.0),
+                 direction.x,
+                 direction.y,
+                 direction.z,
                  falls_out ? std::numeric_limits<double>::infinity() : 1.0};
   return segment;
 }
 
-std::vector<Segment> segments_of_row(const std::vector<Tetrahedron>& tetrahedra, const Scene& scene, const glm::dmat4& unproject, int y) {
+std::vector<Segment> segments_of_row(const std::vector<Tetrahedron>& tetrahedra, const Scene& scene,
+                                     const glm::dmat4& unproject, int y) {
   std::vector<Segment> segments;
   dvec3 eye = to_dvec3(scene.camera.position);
   for (const Tetrahedron& t : tetrahedra) {
@@ -139,7 +152,8 @@ std::vector<Segment> segments_of_row(const std::vector<Tetrahedron>& tetrahedra,
       dvec4 far = unproject * ndc;
       std::optional<Segment> segment = cross(t, dvec3(far) / far.w - eye);
       if (!segment) continue;
-      segment->pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.image.width) + static_cast<std::size_t>(x);
+      segment->pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.image.width) + static_cast<std::size_t>(x);
       segments.push_back(*segment);
     }
   }

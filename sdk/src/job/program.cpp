@@ -71,7 +71,8 @@ int bind_buffer(int set, int binding, Buffer buffer, Job& job, std::vector<Resou
 
 void bind_maps(const ComposedProgram& composed, const MapSet& maps, Job& job, std::vector<ResourceBinding>& resources) {
   for (const MapSlot& slot : composed.maps) {
-    auto known = std::find_if(job.textures.begin(), job.textures.end(), [&](const Texture& t) { return t.name == slot.map; });
+    auto known =
+        std::find_if(job.textures.begin(), job.textures.end(), [&](const Texture& t) { return t.name == slot.map; });
     int index = static_cast<int>(known - job.textures.begin());
     if (known == job.textures.end()) job.textures.push_back(map_texture(maps.at(slot.map)));
     resources.push_back({slot.set, slot.binding, index});

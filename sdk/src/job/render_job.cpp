@@ -1,4 +1,6 @@
 /// The drawing stages as Jobs.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -26,7 +28,9 @@ struct SceneBlock {
 };
 static_assert(sizeof(SceneBlock) == 64 + 5 * 16 + 2 * 64);
 
-glm::vec3 to_vec3(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+glm::vec3 to_vec3(const std::array<float, 3>& a) {
+  return {a[0], a[1], a[2]};
+}
 
 SceneBlock scene_block(const Scene& scene) {
   SceneBlock block{};
@@ -35,7 +39,7 @@ SceneBlock scene_block(const Scene& scene) {
   block.displacement = {scene.displacement.scale, scene.displacement.bias, 0, 0};
   block.albedo = glm::vec4(to_vec3(scene.material.albedo), scene.material.ambient);
   block.specular = {scene.material.specular, scene.material.shininess, 0, 0};
-  std::size_t lights = std::min(scene.lights.size(), most_lights);
+  std::size_t lights = scene.lights.size();
   block.counts = {static_cast<int>(lights), 0, 0, 0};
   for (std::size_t i = 0; i < lights; ++i) {
     block.light_direction[i] = glm::vec4(glm::normalize(to_vec3(scene.lights[i].direction)), 0);
@@ -91,7 +95,14 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
   Result<const StageDescriptor*> stage = registry.stage(request.stage);
   if (!stage) return tl::unexpected(stage.error());
   if ((*stage)->mesh == "none") {
-    return fail(ErrorCode::usage, "render.stage", "stage '" + request.stage + "' draws nothing; expected one that has a mesh, such as 'surface'");
+    return fail(ErrorCode::usage, "render.stage",
+                "stage '" + request.stage + "' draws nothing; expected one that has a mesh, such as 'surface'");
+  }
+  if (scene.lights.size() > most_lights) {
+    return fail(
+        ErrorCode::usage, "render.lights",
+        fmt::format("the scene has {} lights; the drawing stages take at most {}", scene.lights.size(), most_lights),
+        scene.file);
   }
   Permutation permutation;
   permutation.stage = request.stage;
@@ -105,14 +116,16 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
 
   Job job;
   job.name = "render " + prepared->composed.key;
-  int tessellation = (*stage)->mesh == "tessellated" ? tessellation_of(prepared->composed, scene, mesh.triangles.size()) : 1;
+  int tessellation =
+      (*stage)->mesh == "tessellated" ? tessellation_of(prepared->composed, scene, mesh.triangles.size()) : 1;
   Draw draw = make_draw(**stage, make_mesh_buffers(mesh, scene.displacement.units, tessellation), job);
   bind_maps(prepared->composed, maps, job, draw.resources);
   bind_parameters(prepared->composed, job, draw.resources);
   SceneBlock block = scene_block(scene);
   bind_buffer(0, scene_binding, make_buffer("Scene", &block, sizeof(block)), job, draw.resources);
   keep_contract(prepared->program, draw.resources);
-  int color = add_target(job, "color", request.aov == Aov::color ? Format::rgba8_unorm : Format::rgba32_float, scene.image);
+  int color =
+      add_target(job, "color", request.aov == Aov::color ? Format::rgba8_unorm : Format::rgba32_float, scene.image);
   draw.color_targets = {color};
   draw.depth_target = add_target(job, "depth", Format::d32_float, scene.image);
   job.programs.push_back(std::move(prepared->program));
@@ -131,7 +144,8 @@ Image to_image(const std::vector<std::byte>& bytes, const SceneImage& size, Aov 
     std::memcpy(image.pixels.data(), bytes.data(), count * sizeof(float));
     return image;
   }
-  for (std::size_t i = 0; i < count; ++i) image.pixels[i] = static_cast<float>(static_cast<std::uint8_t>(bytes[i])) / 255.0f;
+  for (std::size_t i = 0; i < count; ++i)
+    image.pixels[i] = static_cast<float>(static_cast<std::uint8_t>(bytes[i])) / 255.0f;
   return image;
 }
 
@@ -144,7 +158,8 @@ Result<RenderResult> render_once(Backend& backend, const Registry& registry, con
   Result<std::vector<std::string>> needed = required_maps(registry, request.stage, request.technique);
   if (!needed) return tl::unexpected(needed.error());
   for (const std::string& map : *needed) {
-    if (Status status = bake_map(backend, registry, map, maps, request.values, messages); !status) return tl::unexpected(status.error());
+    if (Status status = bake_map(backend, registry, map, maps, request.values, messages); !status)
+      return tl::unexpected(status.error());
   }
   Result<Job> job = make_render_job(registry, scene, mesh, maps, request, backend.info().shader_target);
   if (!job) return tl::unexpected(job.error());
@@ -163,8 +178,8 @@ Result<RenderResult> render_once(Backend& backend, const Registry& registry, con
 }
 
 /// The rays of the pixels come from the stage itself, written as pictures.
-Result<MapData> surface_hits(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh, MapSet& maps,
-                             RenderRequest request, std::vector<std::string>* messages) {
+Result<MapData> surface_hits(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
+                             MapSet& maps, RenderRequest request, std::vector<std::string>* messages) {
   request.technique = "bump";
   request.aov = Aov::ray_origin;
   Result<RenderResult> origins = render_once(backend, registry, scene, mesh, maps, request, messages);
@@ -193,8 +208,8 @@ Result<RenderResult> render_oracle(Backend& backend, const Registry& registry, c
 
 }  // namespace
 
-Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh, MapSet& maps,
-                            const RenderRequest& request, std::vector<std::string>* messages) {
+Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
+                            MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
   bool replay = request.technique == "oracle" && !maps.contains("oracle_hits");
   return replay ? render_oracle(backend, registry, scene, mesh, maps, request, messages)
                 : render_once(backend, registry, scene, mesh, maps, request, messages);

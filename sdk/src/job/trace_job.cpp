@@ -43,7 +43,9 @@ float to_float(double value) {
 }
 
 /// No limit is the largest float on the other side (RELIEVO_NO_LIMIT).
-float limit_to_float(double t_max) { return to_float(t_max > largest_float ? largest_float : t_max); }
+float limit_to_float(double t_max) {
+  return to_float(t_max > largest_float ? largest_float : t_max);
+}
 
 PackedRay pack(const Ray& ray, AddressMode address) {
   return {to_float(ray.u - tile_of(ray.u, address)),
@@ -137,14 +139,15 @@ std::vector<TraceResult> read_trace(const Job& job, const JobResult& result, std
   return traces;
 }
 
-Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registry, MapSet& maps, std::span<const Ray> rays,
-                                       std::span<const TraceRequest> requests, int repeats,
+Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registry, MapSet& maps,
+                                       std::span<const Ray> rays, std::span<const TraceRequest> requests, int repeats,
                                        std::vector<std::string>* messages) {
   for (const TraceRequest& request : requests) {
     Result<std::vector<std::string>> needed = required_maps(registry, "ray", request.technique);
     if (!needed) return tl::unexpected(needed.error());
     for (const std::string& map : *needed) {
-      if (Status status = bake_map(backend, registry, map, maps, request.values, messages); !status) return tl::unexpected(status.error());
+      if (Status status = bake_map(backend, registry, map, maps, request.values, messages); !status)
+        return tl::unexpected(status.error());
     }
   }
   Result<Job> job = make_trace_job(registry, maps, rays, requests, backend.info().shader_target, repeats);

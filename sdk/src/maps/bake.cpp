@@ -1,9 +1,9 @@
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <fmt/format.h>
 
 #include "job/program.hpp"
 #include "relievo/maps.hpp"
@@ -38,7 +38,8 @@ BakeBlock bake_block(const MapData& output, int level) {
 }
 
 /// One dispatch a level: a command sees what earlier ones wrote.
-Job bake_job(const PreparedProgram& prepared, const MapDescriptor& descriptor, const MapSet& maps, const MapData& output) {
+Job bake_job(const PreparedProgram& prepared, const MapDescriptor& descriptor, const MapSet& maps,
+             const MapData& output) {
   Job job;
   job.name = "bake " + descriptor.name;
   job.programs.push_back(prepared.program);
@@ -98,8 +99,9 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
   std::memcpy(output.texels.data(), bytes.data(), bytes.size());
   for (std::size_t i = 0; i < output.texels.size(); ++i) {
     if (std::isfinite(output.texels[i])) continue;
-    return fail(ErrorCode::backend, "maps.non-finite",
-                fmt::format("map '{}' has the value {} at element {}; expected a finite number", name, output.texels[i], i));
+    return fail(
+        ErrorCode::backend, "maps.non-finite",
+        fmt::format("map '{}' has the value {} at element {}; expected a finite number", name, output.texels[i], i));
   }
   maps[descriptor.name] = std::move(output);
   return {};

@@ -21,7 +21,8 @@ TexelAddress texel_address(AddressMode mode) {
 
 std::vector<std::byte> level_bytes(const MapData& map, const MapLevel& level, int stored) {
   std::size_t count = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height);
-  std::size_t channels = static_cast<std::size_t>(map.channels), stride = static_cast<std::size_t>(stored) * sizeof(float);
+  std::size_t channels = static_cast<std::size_t>(map.channels),
+              stride = static_cast<std::size_t>(stored) * sizeof(float);
   std::vector<std::byte> bytes(count * stride);
   for (std::size_t i = 0; i < count; ++i) {
     std::memcpy(bytes.data() + i * stride, map.texels.data() + (level.offset + i) * channels, channels * sizeof(float));

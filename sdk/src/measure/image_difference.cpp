@@ -39,7 +39,9 @@ bool drawn_around(std::span<const std::uint8_t> image, int width, int height, in
   for (int j = y - margin; j <= y + margin; ++j) {
     for (int i = x - margin; i <= x + margin; ++i) {
       if (i < 0 || j < 0 || i >= width || j >= height) return false;
-      if (image[(static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)) * 4 + 3] == 0) return false;
+      if (image[(static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)) * 4 +
+                3] == 0)
+        return false;
     }
   }
   return true;
@@ -47,13 +49,14 @@ bool drawn_around(std::span<const std::uint8_t> image, int width, int height, in
 
 }  // namespace
 
-std::uint64_t count_cracks(std::span<const std::uint8_t> image, std::span<const std::uint8_t> reference, int width, int height,
-                           int margin) {
+std::uint64_t count_cracks(std::span<const std::uint8_t> image, std::span<const std::uint8_t> reference, int width,
+                           int height, int margin) {
   assert(image.size() == reference.size());
   std::uint64_t cracks = 0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      std::size_t alpha = (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 4 + 3;
+      std::size_t alpha =
+          (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 4 + 3;
       if (image[alpha] == 0 && drawn_around(reference, width, height, x, y, margin)) ++cracks;
     }
   }

@@ -36,7 +36,19 @@ float prism_way_back(vec4 distances, vec4 change) {
   return q;
 }
 
+// A shell without thickness: this fragment is the hit.
+void prism_write_flat() {
+  Ray ray = Ray(prism_point(prism_distances), vec3(0.0, 0.0, -1.0), 0.0, 1.0);
+  vec3 normal = relievo_mesostructure_normal(prism_tangent, prism_bitangent, prism_extrusion(prism_distances), ray.origin.xy);
+  gl_FragDepth = relievo_depth(prism_position);
+  relievo_write(ray, Hit(RELIEVO_HIT, 0.0, ray.origin), prism_position, normal);
+}
+
 void main() {
+  if (prism_exit < 0) {
+    prism_write_flat();
+    return;
+  }
   relievo_cell = prism_exit >> 1;
   vec4 change = prism_distances - prism_eye_distances;
   float back = prism_way_back(prism_distances, change);

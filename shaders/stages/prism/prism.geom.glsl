@@ -33,7 +33,9 @@ layout(location = 9) flat out vec3 prism_extrusion_2;
 layout(location = 10) flat out vec3 prism_extrusion_3;
 layout(location = 11) flat out vec3 prism_tangent;
 layout(location = 12) flat out vec3 prism_bitangent;
-layout(location = 13) flat out int prism_exit;           // 2 · cell + 1 if the ray leaves by the base
+layout(location = 13) flat out int prism_exit;           // 2 · cell + 1 if the ray leaves by the base; or prism_flat
+
+const int prism_flat = -1;
 
 struct Corner {
   vec3 position;
@@ -77,7 +79,8 @@ void prism_emit(Corner corners[4], int vertex, vec4 eye_distances, vec2 tile, in
   prism_extrusion_3 = corners[3].extrusion;
   prism_tangent = base_tangent[0];
   prism_bitangent = base_bitangent[0];
-  prism_exit = 2 * (3 * gl_PrimitiveIDIn + base_tetrahedron[0]) + leaves_by_base;
+  int cell = 3 * gl_PrimitiveIDIn + base_tetrahedron[0];
+  prism_exit = leaves_by_base == prism_flat ? prism_flat : 2 * cell + leaves_by_base;
   gl_Position = relievo_clip_position(corners[vertex].position);
   EmitVertex();
 }
@@ -90,6 +93,12 @@ ivec3 prism_order() {
   return o;
 }
 
+// A shell without thickness has no tetrahedra: the triangle itself is drawn, at its bias.
+void prism_emit_flat(Corner corners[4]) {
+  for (int vertex = 0; vertex < 3; ++vertex) prism_emit(corners, vertex, vec4(0.0), vec2(0.0), prism_flat);
+  EndPrimitive();
+}
+
 void main() {
   ivec3 o = prism_order();
   int tetrahedron = base_tetrahedron[0];
@@ -98,6 +107,10 @@ void main() {
   if (tetrahedron == 2) corners[1] = prism_corner(o.x, 1.0); else corners[1] = prism_corner(o.y, 0.0);
   if (tetrahedron == 0) corners[2] = prism_corner(o.z, 0.0); else corners[2] = prism_corner(o.y, 1.0);
   corners[3] = prism_corner(o.z, 1.0);
+  if (scene_displacement.x == 0.0) {
+    if (tetrahedron == 0) prism_emit_flat(corners);
+    return;
+  }
   vec4 eye_distances;
   if (!prism_eye(scene_eye.xyz, corners, eye_distances)) return;
   vec2 tile = relievo_tile(base_uv[o.x]);

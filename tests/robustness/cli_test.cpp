@@ -1,0 +1,278 @@
+/// The program under bad input: one clear sentence, the right exit code, and nothing half-written left behind.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "relievo/image.hpp"
+#include "support/child.hpp"
+#include "support/height_maps.hpp"
+
+namespace relievo::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string good_rays = "u,v,h,du,dv,dh\n0.1,0.2,1,0.3,0.1,-1\n0.5,0.5,1,0,0,-1\n";
+const std::map<std::string, std::string> no_vulkan = {{"VK_DRIVER_FILES", "/nonexistent"},
+                                                      {"VK_ICD_FILENAMES", "/nonexistent"}};
+const std::map<std::string, std::string> no_egl = {{"__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent"}};
+
+/// A folder with good input to break one thing at a time.
+class Cli : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const HeightMap map = smooth_noise_map(12, 8);
+    ASSERT_TRUE(write_pfm(folder_ / "height.pfm", Image{map.width, map.height, 1, map.texels}));
+    folder_.write("rays.csv", good_rays);
+    folder_.write("scene.toml", "[image]\nwidth = 16\nheight = 16\n");
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  std::vector<std::string> trace(const std::string& height, const std::string& rays,
+                                 std::vector<std::string> more = {}) const {
+    std::vector<std::string> words = {"trace", "--technique", "relief",     "--height",        height,
+                                      "--rays", rays,         "-o",         path("hits.csv")};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  std::vector<std::string> compile_user(std::vector<std::string> more = {}) const {
+    std::vector<std::string> words = {"compile", "mine", "-I", path("techniques"), "--target", "glsl-450",
+                                      "-o",      path("compiled")};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  /// A technique of a user, with the descriptor's tail and the GLSL as given.
+  void write_technique(const std::string& tail, const std::string& glsl) const {
+    fs::create_directories(folder_ / "techniques/mine");
+    folder_.write("techniques/mine/technique.toml",
+                  "schema = 1\nname = \"mine\"\ntitle = \"Mine\"\nclass = \"unsafe\"\nfirst_hit = \"never\"\n"
+                  "module = \"mine.glsl\"\n" +
+                      tail);
+    folder_.write("techniques/mine/mine.glsl", glsl);
+  }
+
+  std::set<std::string> listing() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.path())) names.insert(entry.path().string());
+    return names;
+  }
+
+  /// The program must end with `exit_code`, say all of `parts` in one sentence on stderr, and leave the folder as it was.
+  void expect_refused(const std::vector<std::string>& arguments, int exit_code, const std::vector<std::string>& parts,
+                      const std::map<std::string, std::string>& variables = {}, const std::string& input = {}) const {
+    std::string command;
+    for (const std::string& word : arguments) command += word + " ";
+    SCOPED_TRACE(command);
+    const auto before = listing();
+    const ChildResult result = run_relievo(arguments, variables, input);
+    EXPECT_EQ(result.signal, 0) << "ended by a signal";
+    EXPECT_EQ(result.exit_code, exit_code) << result.err << result.out;
+    for (const std::string& part : parts) EXPECT_NE(result.err.find(part), std::string::npos) << part << "\n" << result.err;
+    EXPECT_LE(result.err.size(), 2000U) << "more than a sentence";
+    EXPECT_FALSE(result.err.empty()) << "says nothing";
+    EXPECT_EQ(result.out, "") << "errors go to stderr";
+    EXPECT_EQ(listing(), before) << "leaves something behind";
+  }
+
+  TemporaryFolder folder_;
+};
+
+const std::string good_glsl =
+    "#include \"shaders/lib/search.glsl\"\n\n"
+    "Hit mine_trace(Ray ray) { return relievo_hit_at(ray, RELIEVO_MISS, 0.0); }\n";
+
+TEST_F(Cli, GoodInputSucceeds) {
+  const ChildResult traced = run_relievo(trace(path("height.pfm"), path("rays.csv")));
+  EXPECT_EQ(traced.exit_code, 0) << traced.err;
+  EXPECT_EQ(TemporaryFolder::read(path("hits.csv")).substr(0, 28), "status,t,u,v,h,steps,fetches");
+  write_technique("", good_glsl);
+  EXPECT_EQ(run_relievo(compile_user()).exit_code, 0);
+  EXPECT_EQ(run_relievo({"--help"}).exit_code, 0);
+  for (const char* command : {"list", "describe", "compile", "bake", "trace", "render", "bench", "conform"}) {
+    const ChildResult help = run_relievo({command, "--help"});
+    EXPECT_EQ(help.exit_code, 0) << command;
+    EXPECT_NE(help.out.find("--json"), std::string::npos) << command;
+  }
+}
+
+TEST_F(Cli, HeightFilesThatAreNone) {
+  const std::string whole = TemporaryFolder::read(path("height.pfm"));
+  folder_.write("truncated.pfm", whole.substr(0, whole.size() / 2));
+  folder_.write("empty.png", "");
+  folder_.write("text.png", "this is not an image");
+  folder_.write("huge.pfm", "Pf\n200000 200000\n-1.0\n");
+  const float nan = std::nanf("");
+  std::string bad = whole;
+  std::memcpy(bad.data() + bad.size() - 8, &nan, 4);
+  folder_.write("nan.pfm", bad);
+  for (const char* name : {"missing.png", "truncated.pfm", "empty.png", "text.png", "huge.pfm", "nan.pfm", "."})
+    expect_refused(trace(path(name), path("rays.csv")), 1, {path(name), "[image."});
+  expect_refused(trace(path("huge.pfm"), path("rays.csv")), 1, {"200000", "16384"});
+  expect_refused({"bake", "normal", "--height", path("missing.png"), "-o", path("n.exr")}, 1, {"missing.png"});
+}
+
+TEST_F(Cli, UnknownNamesAreAnsweredWithTheNearest) {
+  const auto h = path("height.pfm"), r = path("rays.csv");
+  expect_refused({"trace", "--technique", "releif", "--height", h, "--rays", r}, 1, {"releif", "'relief'"});
+  expect_refused(trace(h, r, {"--backend", "vulcan"}), 1, {"vulcan", "vulkan"});
+  expect_refused({"compile", "relief", "--target", "hlsl-5.5"}, 1, {"hlsl-5.5", "hlsl-5."});
+  expect_refused({"compile", "relief", "--target", "glsl-450", "--stage", "surfaces"}, 1, {"surfaces", "surface"});
+  expect_refused(trace(h, r, {"--set", "relief.linear_stepz=3"}), 1, {"linear_stepz", "'relief.linear_steps'"});
+  expect_refused(trace(h, r, {"--set", "linear_steps"}), 1, {"linear_steps", "name=value"});
+  expect_refused(trace(h, r, {"--set", "linear_steps=many"}), 1, {"many", "number"});
+  expect_refused(trace(h, r, {"--set", "linear_steps=0"}), 1, {"relief.linear_steps", "1 to 65536"});
+  expect_refused(trace(h, r, {"--set", "linear_steps=2.5"}), 1, {"relief.linear_steps", "whole"});
+  expect_refused(trace(h, r, {"--address", "repat"}), 1, {"repat", "repeat"});
+  expect_refused(trace(h, r, {"--filter", "exakt"}), 1, {"exakt", "exact"});
+  expect_refused({"bake", "normals", "--height", h, "-o", path("n.exr")}, 1, {"normals", "normal"});
+  expect_refused({"bake", "height", "--height", h, "-o", path("n.exr")}, 1, {"height"});
+  expect_refused({"describe", "surfice"}, 1, {"surfice", "surface"});
+  expect_refused({"render", path("scene.toml"), "--technique", "relief", "--aov", "colour", "-o", path("p.png")}, 1,
+                 {"colour", "color"});
+  expect_refused({"trase"}, 1, {"trase"});
+  expect_refused({}, 1, {"subcommand"});
+  expect_refused({"trace"}, 1, {"--height"});
+}
+
+TEST_F(Cli, RaysThatAreNone) {
+  const auto refused = [&](const std::string& content, const std::vector<std::string>& parts) {
+    folder_.write("bad.csv", content);
+    expect_refused(trace(path("height.pfm"), path("bad.csv")), 1, parts);
+  };
+  refused("u,v,h,du,dv\n0,0,1,0,0\n", {"bad.csv:1", "header"});
+  refused("x,y,z,du,dv,dh\n0,0,1,0,0,-1\n", {"bad.csv:1", "header"});
+  refused("u,v,h,du,dv,dh\n0,0,1,0,0\n", {"bad.csv:2", "5 values"});
+  refused("u,v,h,du,dv,dh\n0,0,1,0,0,-1\n0,0,1,0,0,down\n", {"bad.csv:3:11", "'down'"});
+  refused("u,v,h,du,dv,dh\n", {"bad.csv", "no rays"});
+  refused("", {"bad.csv"});
+  expect_refused(trace(path("height.pfm"), path("missing.csv")), 1, {"missing.csv"});
+  expect_refused(trace(path("height.pfm"), path("")), 1, {});
+  expect_refused(trace(path("height.pfm"), "-"), 1, {"<stdin>"}, {}, "nonsense\n");
+}
+
+TEST_F(Cli, FoldersThatCannotBeWritten) {
+  folder_.write("file", "");
+  const auto h = path("height.pfm"), r = path("rays.csv");
+  expect_refused({"trace", "--technique", "relief", "--height", h, "--rays", r, "-o", path("none/hits.csv")}, 1,
+                 {"none/hits.csv"});
+  expect_refused({"compile", "relief", "--target", "glsl-450", "-o", path("file/x")}, 1, {"file/x"});
+  expect_refused({"bake", "normal", "--height", h, "-o", path("none/n.exr")}, 1, {"none/n.exr"});
+  expect_refused({"bake", "normal", "--height", h, "-o", path("n.tiff")}, 1, {".tiff", ".exr"});
+  expect_refused({"render", path("scene.toml"), "--technique", "relief", "-o", path("none/p.png")}, 1, {"none/p.png"});
+}
+
+TEST_F(Cli, MissingDriversAreUnsupportedAndNamed) {
+  const auto h = path("height.pfm"), r = path("rays.csv");
+  expect_refused(trace(h, r, {"--backend", "vulkan"}), 3, {"Vulkan"}, no_vulkan);
+  expect_refused(trace(h, r, {"--backend", "opengl"}), 3, {"EGL"}, no_egl);
+  auto neither = no_vulkan;
+  neither.insert(no_egl.begin(), no_egl.end());
+  const ChildResult list = run_relievo({"list", "backends", "--json"}, neither);
+  EXPECT_EQ(list.exit_code, 0) << "the program starts on a machine without drivers";
+  const auto json = nlohmann::json::parse(list.out, nullptr, false);
+  ASSERT_TRUE(json.contains("backends")) << list.out;
+  int missing = 0;
+  for (const auto& entry : json["backends"]) missing += !entry["available"] && !entry["reason"].get<std::string>().empty();
+  EXPECT_GE(missing, 2);
+  const ChildResult oracle = run_relievo(trace(h, r, {"--backend", "oracle"}), neither);
+  EXPECT_EQ(oracle.exit_code, 0) << oracle.err;
+  expect_refused({"conform", "--height", h}, 3, {"no backend"}, neither);
+}
+
+TEST_F(Cli, ScenesAndMeshesThatAreNone) {
+  folder_.write("no_uv.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder_.write("no_uv.toml", "[mesh]\npath = \"no_uv.obj\"\n");
+  folder_.write("bad.toml", "[camera]\npositon = [0, 0, 1]\n");
+  folder_.write("lost.toml", "[mesh]\npath = \"lost.obj\"\n");
+  folder_.write("broken.toml", "[camera\n");
+  const auto render = [&](const std::string& scene) {
+    return std::vector<std::string>{"render", path(scene), "--technique", "relief", "-o", path("p.png")};
+  };
+  expect_refused(render("no_uv.toml"), 1, {"no_uv.obj"});
+  expect_refused(render("bad.toml"), 1, {"bad.toml:2", "positon", "position"});
+  expect_refused(render("lost.toml"), 1, {"lost.obj"});
+  expect_refused(render("broken.toml"), 1, {"broken.toml:1"});
+  expect_refused(render("missing.toml"), 1, {"missing.toml"});
+  expect_refused({"render", path("scene.toml"), "--technique", "relief", "--stage", "ray", "-o", path("p.png")}, 1,
+                 {"ray", "surface"});
+  expect_refused({"render", path("scene.toml"), "-o", path("p.png")}, 1, {});
+  expect_refused({"render", path("scene.toml"), "--technique", "oracle", "--stage", "prism", "-o", path("p.png")}, 3,
+                 {"prism", "surface"});
+}
+
+TEST_F(Cli, ATechniqueThatDoesNotCompileIsNamedByFileAndLine) {
+  write_technique("", good_glsl + "float mine_bad() { return missing_name; }\n");
+  expect_refused(compile_user(), 2, {"mine.glsl:4", "missing_name"});
+  write_technique("", "float mine_other() { return 1.0; }\n");
+  expect_refused(compile_user(), 2, {"mine_trace"});
+  fs::create_directories(folder_ / "techniques/mine");
+  folder_.write("techniques/mine/second.glsl", "float mine_a() { return 1.0; }\n\nfloat mine_b() { return 1.0 }\n");
+  write_technique("", "#include \"second.glsl\"\n" + good_glsl);
+  expect_refused(compile_user(), 2, {"second.glsl:3"});
+}
+
+TEST_F(Cli, IncludesThatEscapeOrLoopAreNamedByFileAndLine) {
+  write_technique("", good_glsl + "#include \"../outside.glsl\"\n");
+  expect_refused(compile_user(), 2, {"mine.glsl:4", "../outside.glsl"});
+  write_technique("", good_glsl + "#include \"/etc/passwd\"\n");
+  expect_refused(compile_user(), 2, {"mine.glsl:4", "/etc/passwd"});
+  write_technique("", good_glsl + "#include \"shaders/lib/serch.glsl\"\n");
+  expect_refused(compile_user(), 2, {"mine.glsl:4", "shaders/lib/search.glsl"});
+  write_technique("", good_glsl + "#include \"mine.glsl\"\n");
+  expect_refused(compile_user(), 2, {"mine.glsl:4"});
+}
+
+TEST_F(Cli, DescriptorsThatContradictThemselves) {
+  const std::string loop = "[loops.steps]\ntitle = \"Steps\"\nbounds = \"steps\"\n";
+  write_technique(loop + "min = 9\nmax = 3\ndefault = 4\n", good_glsl);
+  expect_refused(compile_user(), 1, {"technique.toml", "9", "3"});
+  write_technique("maps = [\"nobodys\"]\n", good_glsl);
+  expect_refused(compile_user(), 1, {"technique.toml:7", "nobodys"});
+  write_technique("titel = \"x\"\n", good_glsl);
+  expect_refused(compile_user(), 1, {"technique.toml:7", "titel", "title"});
+  expect_refused({"list", "-I", path("no_such_folder")}, 1, {"no_such_folder"});
+}
+
+TEST_F(Cli, PrismIsRefusedForHlslWithItsFallbackNamed) {
+  expect_refused({"compile", "relief", "--stage", "prism", "--target", "hlsl-5.0"}, 3, {"hlsl-5.0", "prism_pulled"});
+  expect_refused({"compile", "relief", "--stage", "ray", "--target", "glsl-330"}, 3, {"glsl-330", "glsl-430"});
+}
+
+/// A technique that claims first hits and finds none draws a prism without a silhouette.
+TEST_F(Cli, ConformExitsWithFourWhenAClaimFails) {
+  write_technique("", good_glsl);
+  const std::string descriptor = TemporaryFolder::read(path("techniques/mine/technique.toml"));
+  const std::size_t claim = descriptor.find("\"never\"");
+  ASSERT_NE(claim, std::string::npos);
+  folder_.write("techniques/mine/technique.toml", std::string(descriptor).replace(claim, 7, "\"always\""));
+  folder_.write("ball.toml", "[mesh]\nkind = \"sphere\"\n[image]\nwidth = 48\nheight = 48\n");
+  const auto conform = [&](const std::string& technique) {
+    return run_relievo({"conform", "-I", path("techniques"), "--techniques", technique, "--scene", path("ball.toml"),
+                        "--repeats", "1"});
+  };
+  const ChildResult liar = conform("mine"), honest = conform("relief");
+  EXPECT_EQ(liar.exit_code, 4) << liar.out << liar.err;
+  EXPECT_NE(liar.err.find("checks fail"), std::string::npos) << liar.err;
+  EXPECT_NE(liar.out.find("FAIL prism silhouette"), std::string::npos) << liar.out;
+  EXPECT_EQ(honest.exit_code, 0) << honest.out << honest.err;
+}
+
+TEST_F(Cli, ErrorsAreJsonWhenAskedFor) {
+  const ChildResult result = run_relievo(trace(path("missing.png"), path("rays.csv"), {"--json"}));
+  EXPECT_EQ(result.exit_code, 1);
+  const auto json = nlohmann::json::parse(result.out, nullptr, false);
+  ASSERT_TRUE(json.contains("error")) << result.out;
+  EXPECT_EQ(json["error"]["exit_code"], 1);
+  EXPECT_EQ(json["error"]["id"].get<std::string>().substr(0, 6), "image.");
+  EXPECT_NE(json["error"]["message"].get<std::string>().find("missing.png"), std::string::npos);
+}
+
+/// What expect_refused looks for does fail on a run that succeeds or leaves files.
+TEST_F(Cli, ASuccessfulRunChangesTheListing) {
+  const auto before = listing();
+  EXPECT_EQ(run_relievo(trace(path("height.pfm"), path("rays.csv"))).exit_code, 0);
+  EXPECT_NE(listing(), before);
+}
+
+}  // namespace
+}  // namespace relievo::test

@@ -1,0 +1,95 @@
+/// Every claim of `relievo conform` fails on a row that breaks it.
+#include <gtest/gtest.h>
+
+#include "evaluation/evaluation.hpp"
+
+namespace relievo::cli {
+namespace {
+
+/// Rows that keep every claim: two backends, one sphere, one technique that claims first hits.
+struct Case {
+  Case() {
+    static const Registry loaded = *load_registry();
+    input.registry = &loaded;
+    input.techniques = {"relief"};
+    LoadedScene sphere;
+    sphere.scene.mesh.kind = MeshKind::sphere;
+    input.scenes.emplace_back("ball", sphere);
+    BackendInfo vulkan, opengl;
+    vulkan.name = "vulkan";
+    opengl.name = "opengl";
+    evaluation.backends = {opengl, vulkan};
+    evaluation.rays.emplace_back();
+    evaluation.ray_agreements.push_back({"map", "relief", 20, 1000000, 100});
+    evaluation.pictures.push_back({"ball", "prism", "relief", "vulkan", "", "", 0, true, 0});
+    evaluation.picture_agreements.push_back({"ball", "prism", "relief", "opengl", "vulkan", {}});
+    evaluation.picture_agreements.push_back({"ball", "prism", "relief", "vulkan", "vertex", {}});
+    evaluation.cracks.push_back({"ball", "relief", "vulkan", 1, 0});
+  }
+
+  /// Names of the checks that fail.
+  std::vector<std::string> failures() {
+    judge(input, evaluation);
+    std::vector<std::string> names;
+    for (const Check& check : evaluation.checks) {
+      if (!check.passed) names.push_back(check.name);
+    }
+    return names;
+  }
+
+  EvaluationInput input;
+  Evaluation evaluation;
+};
+
+using Names = std::vector<std::string>;
+
+TEST(Judge, PassesRowsThatKeepEveryClaim) {
+  Case good;
+  EXPECT_EQ(good.failures(), Names());
+  EXPECT_GE(good.evaluation.checks.size(), 7U) << "a claim is not judged at all";
+}
+
+TEST(Judge, FailsRaysThatDifferBetweenBackends) {
+  Case bad;
+  bad.evaluation.ray_agreements[0].equal_percent = 99.98;
+  EXPECT_EQ(bad.failures(), Names({"rays equal between backends"}));
+}
+
+TEST(Judge, FailsPicturesThatDifferBetweenBackends) {
+  Case bad;
+  bad.evaluation.picture_agreements[0].difference.within_percent = 99.8;
+  EXPECT_EQ(bad.failures(), Names({"pixels within 1/255 between backends"}));
+}
+
+TEST(Judge, FailsASilhouetteThatIsNotTheDisplacedMeshs) {
+  Case bad;
+  bad.evaluation.picture_agreements[1].difference.mask_iou = 0.98;
+  EXPECT_EQ(bad.failures(), Names({"prism silhouette against the displaced mesh, IoU"}));
+}
+
+TEST(Judge, FailsOneCrackPixel) {
+  Case bad;
+  bad.evaluation.cracks[0].cracks = 1;
+  EXPECT_EQ(bad.failures(), Names({"crack pixels under random vertex orders"}));
+}
+
+TEST(Judge, FailsAPictureThatChanges) {
+  Case bad;
+  bad.evaluation.pictures[0].repeatable = false;
+  EXPECT_EQ(bad.failures(), Names({"pictures that change from run to run"}));
+}
+
+TEST(Judge, FailsOneRayWithANumberThatIsNone) {
+  Case bad;
+  bad.evaluation.rays[0].error.non_finite = 1;
+  EXPECT_EQ(bad.failures(), Names({"rays with NaN or Inf"}));
+}
+
+TEST(Judge, FailsOneValidationMessage) {
+  Case bad;
+  bad.evaluation.messages = {"VUID"};
+  EXPECT_EQ(bad.failures(), Names({"validation and debug messages"}));
+}
+
+}  // namespace
+}  // namespace relievo::cli

@@ -72,14 +72,14 @@ void print_techniques(const Report& report) {
     });
   };
   fmt::print("\n{} on {}, filter exact, at {}°\n", map, backend, shown_angle);
-  fmt::print("{:<20} {:>9} {:>9} {:>10} {:>8} {:>8} {:>9} {:>8}\n", "technique", "wrong %", "missed %", "p99 texel",
+  fmt::print("{:<22} {:>9} {:>9} {:>10} {:>8} {:>8} {:>9} {:>8}\n", "technique", "wrong %", "missed %", "p99 texel",
              "steps", "fetches", "Mrays/s", "x relief");
   for (const std::string& technique : report.techniques) {
     auto row = find(technique, shown_angle);
     if (row == rows.end()) continue;
     const ErrorFigures& e = row->error;
     double ratio = ratio_to_relief(report.evaluation, *row);
-    fmt::print("{:<20} {:>9.3f} {:>9.3f} {:>10.4f} {:>8.1f} {:>8.1f} {:>9} {:>8}\n", technique, e.wrong_percent(),
+    fmt::print("{:<22} {:>9.3f} {:>9.3f} {:>10.4f} {:>8.1f} {:>8.1f} {:>9} {:>8}\n", technique, e.wrong_percent(),
                e.percent(e.missed), e.uv_texels.p99, e.mean_steps, e.mean_fetches,
                row->seconds > 0 ? fmt::format("{:.2f}", static_cast<double>(e.rays) / row->seconds / 1e6) : "-",
                ratio > 0 ? fmt::format("{:.2f}", ratio) : "-");

@@ -11,7 +11,7 @@ namespace {
 constexpr const char* style = R"(
 :root { color-scheme: light; --ink: #1d2126; --soft: #5c6670; --line: #dfe3e7; --bad: #b3261e; --good: #1b6e3c; }
 * { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 1280px; padding: 2rem 1.5rem 4rem; color: var(--ink); background: #fff;
+body { margin: 0 auto; max-width: 1400px; padding: 2rem 1.5rem 4rem; color: var(--ink); background: #fff;
   font: 15px/1.5 system-ui, "Segoe UI", "Helvetica Neue", "DejaVu Sans", sans-serif; }
 h1 { font-size: 1.7rem; line-height: 1.2; margin: 0 0 .6rem; }
 h2 { font-size: 1.25rem; margin: 2.6rem 0 .6rem; padding-top: .8rem; border-top: 1px solid var(--line); }

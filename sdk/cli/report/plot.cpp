@@ -131,7 +131,8 @@ std::string plot_script(const Sweep& sweep, double angle) {
          "set encoding utf8\nset logscale xy\nset grid linecolor rgb '#dddddd' linetype 1\nset border 3 linecolor rgb "
          "'#555555'\nset tics nomirror\n"
          "set xlabel 'time, as a ratio to relief 100 + 7'\nset ylabel 'wrong hits, %'\nset format '%g'\n"
-         "set offsets graph 0.03, graph 0.03\nset key outside below horizontal samplen 2 maxrows 4\n" +
+         "set offsets graph 0.03, graph 0.03\nset xlabel offset 0,0.4\nset key outside below horizontal samplen 2 "
+         "maxrows 4\n" +
          blocks + "plot" + curves + "\n";
 }
 

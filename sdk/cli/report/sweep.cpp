@@ -10,6 +10,9 @@ namespace relievo::cli {
 
 namespace {
 
+/// The sweep's images are small and its times noisy: it repeats at least this often.
+constexpr int least_repeats = 5;
+
 double median(std::vector<double> values) {
   if (values.empty()) return -1;
   auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -78,7 +81,7 @@ struct Rays {
 Status run_batch(const EvaluationInput& input, Backend& backend, MapSet& maps, const Rays& rays, Batch batch,
                  Sweep& sweep) {
   Result<std::vector<TraceResult>> results =
-      trace(backend, *input.registry, maps, rays.rays, batch.requests, input.repeats);
+      trace(backend, *input.registry, maps, rays.rays, batch.requests, std::max(input.repeats, least_repeats));
   if (!results) return tl::unexpected(results.error());
   const HeightMap& height = input.ray_cases.front().height;
   double reference = median(results->front().seconds);

@@ -136,6 +136,9 @@ Status compile_one(const Registry& registry, const CompileOptions& options, std:
   compile_options.threads = options.jobs;
   Result<CompiledProgram> compiled = compile(*composed, targets, compile_options, (*stage)->fallback);
   if (!compiled) return tl::unexpected(compiled.error());
+  if (options.output != "-") {
+    if (Status status = make_folder(options.output); !status) return status;
+  }
   std::string base = technique.empty() ? options.stage : technique + "." + options.stage;
   if (Status status = write_outputs(*compiled, targets, base, options.output); !status) return status;
   return options.depend || !options.depfile.empty() ? write_depfile(*composed, base, options) : Status();
@@ -155,9 +158,6 @@ Status run_compile(const Context& context, const CompileOptions& options) {
     Result<std::vector<std::string>> names = technique_names(*registry, options.techniques);
     if (!names) return tl::unexpected(names.error());
     techniques = *names;
-  }
-  if (options.output != "-") {
-    if (Status status = make_folder(options.output); !status) return status;
   }
   for (const std::string& technique : techniques) {
     if (Status status = compile_one(*registry, options, *targets, technique); !status) return status;

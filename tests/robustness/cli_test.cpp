@@ -80,7 +80,7 @@ class Cli : public ::testing::Test {
 };
 
 const std::string good_glsl =
-    "#include \"shaders/lib/search.glsl\"\n\n"
+    "#include \"shaders/lib/interval.glsl\"\n\n"
     "Hit mine_trace(Ray ray) { return relievo_hit_at(ray, RELIEVO_MISS, 0.0); }\n";
 
 TEST_F(Cli, GoodInputSucceeds) {
@@ -115,7 +115,7 @@ TEST_F(Cli, HeightFilesThatAreNone) {
 
 TEST_F(Cli, UnknownNamesAreAnsweredWithTheNearest) {
   const auto h = path("height.pfm"), r = path("rays.csv");
-  expect_refused({"trace", "--technique", "releif", "--height", h, "--rays", r}, 1, {"releif", "'relief'"});
+  expect_refused({"trace", "--technique", "releif", "--height", h, "--rays", r}, 1, {"releif", "the nearest is \"relief\""});
   expect_refused(trace(h, r, {"--backend", "vulcan"}), 1, {"vulcan", "vulkan"});
   expect_refused({"compile", "relief", "--target", "hlsl-5.5"}, 1, {"hlsl-5.5", "hlsl-5."});
   expect_refused({"compile", "relief", "--target", "glsl-450", "--stage", "surfaces"}, 1, {"surfaces", "surface"});
@@ -199,8 +199,8 @@ TEST_F(Cli, ScenesAndMeshesThatAreNone) {
   expect_refused({"render", path("scene.toml"), "--technique", "relief", "--stage", "ray", "-o", path("p.png")}, 1,
                  {"ray", "surface"});
   expect_refused({"render", path("scene.toml"), "-o", path("p.png")}, 1, {});
-  expect_refused({"render", path("scene.toml"), "--technique", "oracle", "--stage", "prism", "-o", path("p.png")}, 3,
-                 {"prism", "surface"});
+  expect_refused({"render", path("scene.toml"), "--technique", "oracle", "--stage", "vertex", "-o", path("p.png")}, 3,
+                 {"vertex", "tessellated"});
 }
 
 TEST_F(Cli, ATechniqueThatDoesNotCompileIsNamedByFileAndLine) {

@@ -140,12 +140,15 @@ void add_report(CLI::App& app, Context& context) {
   command->add_option("--backends", options->backends)->delimiter(',')->capture_default_str();
   command->add_option("--ray-image", options->ray_image, "Rays a side of the ray image")
       ->check(CLI::Range(1, 8192))
+      ->take_last()
       ->capture_default_str();
   command->add_option("--sweep-image", options->sweep_image, "The same where step counts are varied")
       ->check(CLI::Range(1, 2048))
+      ->take_last()
       ->capture_default_str();
   command->add_option("--repeats", options->repeats, "Timed runs, and runs that must be byte-identical")
       ->check(CLI::Range(1, 100))
+      ->take_last()
       ->capture_default_str();
   command->add_option("--set", options->set, "technique.parameter=value");
   command->add_option("-o,--output", options->output, "Folder for index.html, report.json, rays.csv and pictures/")

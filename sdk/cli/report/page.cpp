@@ -29,7 +29,7 @@ th { font-weight: 600; color: var(--soft); vertical-align: bottom; border-bottom
 th.n, td.n { text-align: right; }
 td.n { white-space: nowrap; }
 td.name { white-space: nowrap; }
-.pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(250px, 1fr)); gap: 1rem; margin: .4rem 0 1.2rem; }
+.pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 1rem; margin: .4rem 0 1.2rem; }
 figure { margin: 0; }
 figure img { display: block; width: 100%; height: auto; background: #101316; border-radius: 3px; }
 figcaption { font-size: .8rem; line-height: 1.4; margin-top: .3rem; font-variant-numeric: tabular-nums; }

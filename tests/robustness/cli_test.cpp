@@ -115,7 +115,8 @@ TEST_F(Cli, HeightFilesThatAreNone) {
 
 TEST_F(Cli, UnknownNamesAreAnsweredWithTheNearest) {
   const auto h = path("height.pfm"), r = path("rays.csv");
-  expect_refused({"trace", "--technique", "releif", "--height", h, "--rays", r}, 1, {"releif", "the nearest is \"relief\""});
+  expect_refused({"trace", "--technique", "releif", "--height", h, "--rays", r}, 1,
+                 {"releif", "the nearest is \"relief\""});
   expect_refused(trace(h, r, {"--backend", "vulcan"}), 1, {"vulcan", "vulkan"});
   expect_refused({"compile", "relief", "--target", "hlsl-5.5"}, 1, {"hlsl-5.5", "hlsl-5."});
   expect_refused({"compile", "relief", "--target", "glsl-450", "--stage", "surfaces"}, 1, {"surfaces", "surface"});

@@ -18,12 +18,6 @@ struct BenchOptions {
   int repeat = 5;
 };
 
-double median(std::vector<double> values) {
-  if (values.empty()) return -1;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
 Result<std::vector<TraceRequest>> requests_of(const Registry& registry, const BenchOptions& options) {
   Result<std::vector<std::string>> names = technique_names(registry, options.techniques);
   if (!names) return tl::unexpected(names.error());

@@ -187,6 +187,13 @@ Status make_folder(const std::filesystem::path& path) {
   return {};
 }
 
+double median(std::vector<double> values) {
+  if (values.empty()) return -1;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 nlohmann::json to_json(const ErrorFigures& f) {
   auto quantiles = [](const ErrorQuantiles& q) {
     return nlohmann::json{{"p50", q.p50}, {"p99", q.p99}, {"max", q.max}};

@@ -64,6 +64,9 @@ Result<LoadedScene> load_scene_parts(const std::filesystem::path& path);
 Status write_text(const std::string& path, const std::string& text);
 Status make_folder(const std::filesystem::path& path);
 
+/// The upper median; −1 of nothing, which stands for "not timed".
+double median(std::vector<double> values);
+
 nlohmann::json to_json(const ErrorFigures& figures);
 
 /// A progress bar on stderr when that is a terminal; nothing otherwise.

@@ -10,13 +10,6 @@ namespace relievo::cli {
 
 namespace {
 
-double median(std::vector<double> values) {
-  if (values.empty()) return -1;
-  auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 std::vector<TraceRequest> requests(const EvaluationInput& input, HeightFilter filter, double scale, bool count) {
   std::vector<TraceRequest> list;
   for (const std::string& technique : input.techniques) {

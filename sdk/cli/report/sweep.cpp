@@ -13,13 +13,6 @@ namespace {
 /// The sweep's images are small and its times noisy: it repeats at least this often.
 constexpr int least_repeats = 5;
 
-double median(std::vector<double> values) {
-  if (values.empty()) return -1;
-  auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The loop that bounds the search is the longest one: relief's linear steps rather than its halvings.
 const Parameter* search_loop(const TechniqueDescriptor& technique) {
   const Parameter* longest = nullptr;

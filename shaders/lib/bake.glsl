@@ -1,4 +1,4 @@
-// Host of a map's bake module: runs relievo_bake once for every texel of the map.
+// Host of a map's bake module: runs relievo_bake once for every texel of the map (of every layer, if it is 3D).
 // A module defines `void relievo_bake(ivec2 texel)`, reads its input maps and writes with relievo_bake_write.
 #include "ray.glsl"
 
@@ -7,13 +7,18 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140, set = 0, binding = 1) uniform Bake {
   ivec4 relievo_bake_size;    // width, height, channels, level
   ivec4 relievo_bake_source;  // of the level below: width, height, offset; offset of this level, in texels
+  ivec4 relievo_bake_layers;  // x: how many
 };
 layout(std430, set = 0, binding = 2) buffer MapTexels { float relievo_map_texels[]; };
 
 ivec2 relievo_bake_extent() { return relievo_bake_size.xy; }
 
+int relievo_bake_layer() { return int(gl_GlobalInvocationID.z); }
+int relievo_bake_layer_count() { return relievo_bake_layers.x; }
+
 void relievo_bake_write(ivec2 texel, int channel, float value) {
-  int index = (relievo_bake_source.w + texel.y * relievo_bake_size.x + texel.x) * relievo_bake_size.z + channel;
+  int row = relievo_bake_layer() * relievo_bake_size.y + texel.y;
+  int index = (relievo_bake_source.w + row * relievo_bake_size.x + texel.x) * relievo_bake_size.z + channel;
   relievo_map_texels[index] = value;
 }
 

@@ -62,12 +62,22 @@ struct TechniqueDescriptor {
 enum class MapLevels { single, pyramid };
 std::string_view to_string(MapLevels levels);
 
+/// Which way a quantised value may move, so that what a technique concludes from it stays true.
+enum class Rounding { nearest, up, down };
+std::string_view to_string(Rounding rounding);
+
 /// A map baked by a compute module: reads its inputs, writes `channels` floats a texel.
 struct MapDescriptor {
   std::string name, title, source, summary;
   std::vector<std::string> inputs;  ///< other maps; empty for `height`, which the caller provides
   int channels = 1;                 ///< 1–4
   MapLevels levels = MapLevels::single;
+  bool is_3d = false;            ///< a sampler3D; `single` levels only
+  int layers = 1;                ///< texels along the third axis; or
+  std::string layers_parameter;  ///< the int parameter that says how many; empty = `layers`
+  /// One a channel, for maps that have an int parameter `bits` (8, 16 or 32): 8 and 16 are stored as unorm. Empty:
+  /// floats.
+  std::vector<Rounding> rounding;
   std::string sampler;       ///< GLSL name, e.g. "relievo_height_map"
   int set = 1, binding = 0;  ///< the binding contract; unique among maps
   std::vector<Parameter> parameters;

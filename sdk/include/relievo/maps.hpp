@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,7 +21,15 @@ struct MapData {
   std::vector<float> texels;
   AddressMode address = AddressMode::repeat;
   int levels = 1;
+  int depth = 1;  ///< layers of a 3D map, one after another; then levels is 1
+  bool is_3d = false;
+  /// 8, 16: every texel is k / (2^bits − 1) and the texture is unorm; 32: floats.
+  int bits = 32;
 };
+
+/// Brings every value to the nearest, next higher or next lower multiple of 1 / (2^bits − 1), by channel.
+/// Values must lie in [0,1], else "maps.range"; bits 32 changes nothing.
+Status quantise(MapData& map, int bits, std::span<const Rounding> rounding);
 
 /// Texels of level k, and of all levels before it.
 struct MapLevel {
@@ -28,6 +37,10 @@ struct MapLevel {
   std::size_t offset = 0;  ///< in texels
 };
 MapLevel map_level(const MapData& map, int level);
+
+/// Texels of all levels and layers; and the bytes that they take as a texture.
+std::size_t texel_count(const MapData& map);
+std::size_t texture_bytes(const MapData& map);
 
 /// Maps by name; "height" is always there.
 using MapSet = std::map<std::string, MapData, std::less<>>;
@@ -42,7 +55,8 @@ MapSet map_set(const HeightMap& height_map);
 Status bake_map(Backend& backend, const Registry& registry, std::string_view map, MapSet& maps,
                 const std::map<std::string, double>& values = {}, std::vector<std::string>* messages = nullptr);
 
-/// The texture of a map: 1, 2 or 4 float channels (3 become 4), filtered linearly, with the address mode of the map.
+/// The texture of a map, of its bits: 1, 2 or 4 channels (3 become 4), filtered linearly, with the address mode of the
+/// map.
 Texture map_texture(const MapData& map);
 
 }  // namespace relievo

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <sstream>
 
 #include "describe/descriptor_fields.hpp"
 
@@ -9,6 +10,9 @@ namespace relievo {
 namespace {
 
 constexpr std::array<std::string_view, 2> level_names = {"single", "pyramid"};
+constexpr std::array<std::string_view, 2> dimension_names = {"2d", "3d"};
+constexpr std::array<std::string_view, 3> rounding_names = {"nearest", "up", "down"};
+constexpr int max_layers = 256;
 
 bool is_glsl_identifier(std::string_view name) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -36,12 +40,58 @@ void read_binding(TomlReader& reader, MapDescriptor& map) {
   map.binding = binding.integer("binding", 0, 127);
 }
 
+/// A number, or the name of the parameter that holds it.
+void read_layers(TomlReader& reader, MapDescriptor& map) {
+  map.is_3d = reader.choice_of<int>("dimension", dimension_names, 0) == 1;
+  if (!map.is_3d) {
+    for (std::string_view key : {"layers", "layers_parameter"}) {
+      if (reader.has(key)) {
+        reader.report("describe.range", fmt::format("only a map of dimension \"3d\" has {}", quote(key)), key);
+      }
+    }
+    return;
+  }
+  if (map.levels != MapLevels::single) {
+    reader.report("describe.range", "a map of dimension \"3d\" has the levels \"single\"", "levels");
+  }
+  if (reader.has("layers_parameter")) {
+    map.layers_parameter = reader.name("layers_parameter");
+  } else {
+    map.layers = reader.integer("layers", 1, max_layers);
+  }
+}
+
+/// One word a channel: "up down".
+void read_rounding(TomlReader& reader, MapDescriptor& map) {
+  std::istringstream words(reader.text_or("rounding", ""));
+  for (std::string word; words >> word;) {
+    const auto found = std::find(rounding_names.begin(), rounding_names.end(), word);
+    if (found == rounding_names.end()) {
+      reader.report(
+          "describe.range",
+          fmt::format("\"rounding\" has {}; expected \"nearest\", \"up\" or \"down\" for each channel", quote(word)),
+          "rounding");
+      return;
+    }
+    map.rounding.push_back(static_cast<Rounding>(found - rounding_names.begin()));
+  }
+  if (!map.rounding.empty() && map.rounding.size() != static_cast<std::size_t>(map.channels)) {
+    reader.report(
+        "describe.range",
+        fmt::format("\"rounding\" has {} words; expected {}, one a channel", map.rounding.size(), map.channels),
+        "rounding");
+  }
+}
+
 void read_map(TomlReader& reader, MapDescriptor& map) {
-  reader.allow_keys({"schema", "name", "title", "source", "summary", "inputs", "channels", "levels", "sampler",
-                     "binding", "module", "access", "features", "loops", "parameters"});
+  reader.allow_keys({"schema", "name", "title", "source", "summary", "inputs", "channels", "levels", "dimension",
+                     "layers", "layers_parameter", "rounding", "sampler", "binding", "module", "access", "features",
+                     "loops", "parameters"});
   map.inputs = reader.names("inputs");
   map.channels = reader.integer("channels", 1, 4);
   map.levels = reader.choice_of<MapLevels>("levels", level_names, MapLevels::single);
+  read_layers(reader, map);
+  read_rounding(reader, map);
   map.sampler = read_sampler(reader);
   read_binding(reader, map);
   map.module = reader.path_or_empty("module");
@@ -59,8 +109,36 @@ std::string_view to_string(MapLevels levels) {
   return level_names[static_cast<std::size_t>(levels)];
 }
 
+std::string_view to_string(Rounding rounding) {
+  return rounding_names[static_cast<std::size_t>(rounding)];
+}
+
+namespace {
+
+/// What the host reads from the map's own parameters: the number of layers and of bits.
+Status check_host_parameter(const MapDescriptor& map, std::string_view name, int most) {
+  auto found = std::find_if(map.parameters.begin(), map.parameters.end(),
+                            [&](const Parameter& parameter) { return parameter.name == name; });
+  if (found != map.parameters.end() && found->is_integer && found->minimum >= 1 && found->maximum <= most) return {};
+  return fail(
+      ErrorCode::usage, "describe.map-parameter",
+      fmt::format("map {} lacks the integer parameter {} with values in 1 to {}", quote(map.name), quote(name), most),
+      map.file);
+}
+
+}  // namespace
+
 Result<MapDescriptor> parse_map(std::string_view text, const std::string& path) {
-  return parse_descriptor<MapDescriptor>(text, path, "map", read_map);
+  Result<MapDescriptor> map = parse_descriptor<MapDescriptor>(text, path, "map", read_map);
+  if (!map) return map;
+  if (!map->layers_parameter.empty()) {
+    if (Status status = check_host_parameter(*map, map->layers_parameter, max_layers); !status)
+      return tl::unexpected(status.error());
+  }
+  if (!map->rounding.empty()) {
+    if (Status status = check_host_parameter(*map, "bits", 32); !status) return tl::unexpected(status.error());
+  }
+  return map;
 }
 
 }  // namespace relievo

@@ -16,6 +16,7 @@ namespace {
 struct BakeBlock {
   std::array<std::int32_t, 4> size;    // width, height, channels, level
   std::array<std::int32_t, 4> source;  // of the level below: width, height, offset; offset of this level, in texels
+  std::array<std::int32_t, 4> layers;  // x: how many
 };
 
 constexpr int bake_block_binding = 1, bake_texels_binding = 2;
@@ -34,7 +35,8 @@ std::map<std::string, double> values_of(const std::map<std::string, double>& val
 BakeBlock bake_block(const MapData& output, int level) {
   MapLevel here = map_level(output, level), below = map_level(output, std::max(0, level - 1));
   return {{here.width, here.height, output.channels, level},
-          {below.width, below.height, static_cast<std::int32_t>(below.offset), static_cast<std::int32_t>(here.offset)}};
+          {below.width, below.height, static_cast<std::int32_t>(below.offset), static_cast<std::int32_t>(here.offset)},
+          {output.depth, 0, 0, 0}};
 }
 
 /// One dispatch a level: a command sees what earlier ones wrote.
@@ -46,8 +48,7 @@ Job bake_job(const PreparedProgram& prepared, const MapDescriptor& descriptor, c
   std::vector<ResourceBinding> shared;
   bind_maps(prepared.composed, maps, job, shared);
   bind_parameters(prepared.composed, job, shared);
-  MapLevel end = map_level(output, output.levels);
-  Buffer result{"MapTexels", end.offset * static_cast<std::size_t>(output.channels) * sizeof(float), {}};
+  Buffer result{"MapTexels", texel_count(output) * static_cast<std::size_t>(output.channels) * sizeof(float), {}};
   int index = bind_buffer(0, bake_texels_binding, std::move(result), job, shared);
   for (int level = 0; level < output.levels; ++level) {
     Dispatch dispatch;
@@ -56,16 +57,26 @@ Job bake_job(const PreparedProgram& prepared, const MapDescriptor& descriptor, c
     bind_buffer(0, bake_block_binding, make_buffer("Bake", &block, sizeof(block)), job, dispatch.resources);
     keep_contract(prepared.program, dispatch.resources);
     auto groups = [](int extent) { return (static_cast<std::uint32_t>(extent) + bake_group - 1) / bake_group; };
-    dispatch.groups = {groups(block.size[0]), groups(block.size[1]), 1};
+    dispatch.groups = {groups(block.size[0]), groups(block.size[1]), static_cast<std::uint32_t>(output.depth)};
     job.commands.emplace_back(std::move(dispatch));
   }
   job.read_backs.push_back({ReadBack::Source::buffer, index, 0});
   return job;
 }
 
-/// The map's extent and levels, without its texels.
-MapData empty_map(const MapDescriptor& descriptor, const MapData& height) {
-  MapData map{descriptor.name, height.width, height.height, descriptor.channels, {}, height.address, 1};
+/// An integer parameter of the map as `program` has it.
+int parameter_of(const ComposedProgram& program, const MapDescriptor& map, std::string_view name, int fallback) {
+  for (const ParameterSlot& slot : program.parameters) {
+    if (slot.name == fmt::format("{}.{}", map.name, name)) return static_cast<int>(slot.value);
+  }
+  return fallback;
+}
+
+/// The map's extent, levels and layers, without its texels.
+MapData empty_map(const MapDescriptor& descriptor, const ComposedProgram& program, const MapData& height) {
+  MapData map{descriptor.name, height.width, height.height, descriptor.channels, {}, height.address};
+  map.is_3d = descriptor.is_3d;
+  map.depth = parameter_of(program, descriptor, descriptor.layers_parameter, descriptor.layers);
   if (descriptor.levels == MapLevels::single) return map;
   map.width = static_cast<int>(std::bit_ceil(static_cast<unsigned>(height.width)));
   map.height = static_cast<int>(std::bit_ceil(static_cast<unsigned>(height.height)));
@@ -90,7 +101,8 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
   Result<PreparedProgram> prepared = prepare_composed(std::move(*composed), backend.info().shader_target);
   if (!prepared) return tl::unexpected(prepared.error());
 
-  MapData output = empty_map(descriptor, height);
+  const int bits = descriptor.rounding.empty() ? 32 : parameter_of(prepared->composed, descriptor, "bits", 32);
+  MapData output = empty_map(descriptor, prepared->composed, height);
   Result<JobResult> result = backend.execute(bake_job(*prepared, descriptor, maps, output));
   if (!result) return tl::unexpected(result.error());
   append_messages(*result, messages);
@@ -103,6 +115,7 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
         ErrorCode::backend, "maps.non-finite",
         fmt::format("map '{}' has the value {} at element {}; expected a finite number", name, output.texels[i], i));
   }
+  if (Status status = quantise(output, bits, descriptor.rounding); !status) return status;
   maps[descriptor.name] = std::move(output);
   return {};
 }

@@ -1,6 +1,10 @@
 /// Maps as textures of a Job.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
+#include <limits>
+#include <type_traits>
 
 #include "relievo/maps.hpp"
 
@@ -19,15 +23,41 @@ TexelAddress texel_address(AddressMode mode) {
   }
 }
 
-std::vector<std::byte> level_bytes(const MapData& map, const MapLevel& level, int stored) {
-  std::size_t count = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height);
-  std::size_t channels = static_cast<std::size_t>(map.channels),
-              stride = static_cast<std::size_t>(stored) * sizeof(float);
-  std::vector<std::byte> bytes(count * stride);
+/// What one value is in the texture; a quantised one is a whole multiple already.
+template <class Stored>
+Stored stored_value(float value) {
+  if constexpr (std::is_same_v<Stored, float>) return value;
+  return static_cast<Stored>(std::lround(static_cast<double>(value) * std::numeric_limits<Stored>::max()));
+}
+
+template <class Stored>
+std::vector<std::byte> level_bytes(const MapData& map, const MapLevel& level, std::size_t stored) {
+  const std::size_t count = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height) *
+                            static_cast<std::size_t>(map.depth);
+  const std::size_t channels = static_cast<std::size_t>(map.channels);
+  std::vector<Stored> values(count * stored);
   for (std::size_t i = 0; i < count; ++i) {
-    std::memcpy(bytes.data() + i * stride, map.texels.data() + (level.offset + i) * channels, channels * sizeof(float));
+    for (std::size_t c = 0; c < channels; ++c)
+      values[i * stored + c] = stored_value<Stored>(map.texels[(level.offset + i) * channels + c]);
   }
+  std::vector<std::byte> bytes(values.size() * sizeof(Stored));
+  std::memcpy(bytes.data(), values.data(), bytes.size());
   return bytes;
+}
+
+std::vector<std::byte> level_bytes(const MapData& map, const MapLevel& level, std::size_t stored) {
+  if (map.bits == 8) return level_bytes<std::uint8_t>(map, level, stored);
+  if (map.bits == 16) return level_bytes<std::uint16_t>(map, level, stored);
+  return level_bytes<float>(map, level, stored);
+}
+
+Format map_format(const MapData& map, std::size_t stored) {
+  constexpr std::array<std::array<Format, 3>, 3> formats = {{
+      {Format::r8_unorm, Format::rg8_unorm, Format::rgba8_unorm},
+      {Format::r16_unorm, Format::rg16_unorm, Format::rgba16_unorm},
+      {Format::r32_float, Format::rg32_float, Format::rgba32_float},
+  }};
+  return formats[map.bits == 8 ? 0 : map.bits == 16 ? 1 : 2][stored == 1 ? 0 : stored == 2 ? 1 : 2];
 }
 
 }  // namespace
@@ -48,14 +78,26 @@ MapSet map_set(const HeightMap& height_map) {
   return maps;
 }
 
+std::size_t texel_count(const MapData& map) {
+  return map_level(map, map.levels).offset * static_cast<std::size_t>(map.depth);
+}
+
+std::size_t texture_bytes(const MapData& map) {
+  const std::size_t stored = map.channels == 3 ? 4 : static_cast<std::size_t>(map.channels);
+  return texel_count(map) * stored * static_cast<std::size_t>(map.bits) / 8;
+}
+
 Texture map_texture(const MapData& map) {
-  int stored = map.channels == 3 ? 4 : map.channels;
+  const std::size_t stored = map.channels == 3 ? 4 : static_cast<std::size_t>(map.channels);
   Texture texture;
   texture.name = map.name;
-  texture.format = stored == 1 ? Format::r32_float : stored == 2 ? Format::rg32_float : Format::rgba32_float;
+  texture.format = map_format(map, stored);
   texture.width = map.width;
   texture.height = map.height;
+  texture.depth = map.depth;
+  texture.is_3d = map.is_3d;
   texture.sampler.address.fill(texel_address(map.address));
+  texture.sampler.address[2] = TexelAddress::clamp;
   texture.levels = map.levels;
   for (int k = 0; k < map.levels; ++k) texture.data.push_back(level_bytes(map, map_level(map, k), stored));
   return texture;

@@ -7,7 +7,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140, set = 0, binding = 1) uniform Bake {
   ivec4 relievo_bake_size;    // width, height, channels, level
   ivec4 relievo_bake_source;  // of the level below: width, height, offset; offset of this level, in texels
-  ivec4 relievo_bake_layers;  // x: how many
+  ivec4 relievo_bake_layers;  // how many, pass
 };
 layout(std430, set = 0, binding = 2) buffer MapTexels { float relievo_map_texels[]; };
 
@@ -20,6 +20,14 @@ void relievo_bake_write(ivec2 texel, int channel, float value) {
   int row = relievo_bake_layer() * relievo_bake_size.y + texel.y;
   int index = (relievo_bake_source.w + row * relievo_bake_size.x + texel.x) * relievo_bake_size.z + channel;
   relievo_map_texels[index] = value;
+}
+
+int relievo_bake_pass() { return relievo_bake_layers.y; }
+
+// What an earlier pass wrote at this level.
+float relievo_bake_read(ivec2 texel, int layer, int channel) {
+  int row = layer * relievo_bake_size.y + texel.y;
+  return relievo_map_texels[(relievo_bake_source.w + row * relievo_bake_size.x + texel.x) * relievo_bake_size.z + channel];
 }
 
 int relievo_bake_level() { return relievo_bake_size.w; }

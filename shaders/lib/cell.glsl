@@ -17,6 +17,16 @@ float relievo_first_root(float a, float b, float c) {
   return s <= 1.0 ? s : 2.0;
 }
 
+// H − h at a point of the cell.
+float relievo_cell_clearance(vec4 corners, vec3 point) {
+  precise float du = corners.y - corners.x;
+  precise float dv = corners.z - corners.x;
+  precise float twist = (corners.w - corners.z) - du;
+  precise float height = corners.x + du * point.x + (dv + twist * point.x) * point.y;
+  precise float clearance = point.z - height;
+  return clearance;
+}
+
 // Corners (00, 10, 01, 11) of a cell; the ray runs from `from` to `to` (position within the cell in [0, 1]², height H).
 // Returns the share of the way to the first point that is not above the surface, or 2.
 float relievo_cell_hit(vec4 corners, vec3 from, vec3 to) {

@@ -62,8 +62,9 @@ struct TechniqueDescriptor {
 enum class MapLevels { single, pyramid };
 std::string_view to_string(MapLevels levels);
 
-/// Which way a quantised value may move, so that what a technique concludes from it stays true.
-enum class Rounding { nearest, up, down };
+/// Which way a quantised value may move, so that what a technique concludes from it stays true. `exact`: not
+/// at all; the map takes as many bits as that needs.
+enum class Rounding { nearest, up, down, exact };
 std::string_view to_string(Rounding rounding);
 
 /// A map baked by a compute module: reads its inputs, writes `channels` floats a texel.
@@ -75,6 +76,7 @@ struct MapDescriptor {
   bool is_3d = false;            ///< a sampler3D; `single` levels only
   int layers = 1;                ///< texels along the third axis; or
   std::string layers_parameter;  ///< the int parameter that says how many; empty = `layers`
+  int passes = 1;  ///< times that the module runs over every level; later passes read what earlier ones wrote
   /// One a channel, for maps that have an int parameter `bits` (8, 16 or 32): 8 and 16 are stored as unorm. Empty:
   /// floats.
   std::vector<Rounding> rounding;

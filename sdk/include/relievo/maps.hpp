@@ -28,6 +28,7 @@ struct MapData {
 };
 
 /// Brings every value to the nearest, next higher or next lower multiple of 1 / (2^bits − 1), by channel.
+/// Channels that are to be `exact` raise the bits of all until they are.
 /// Values must lie in [0,1], else "maps.range"; bits 32 changes nothing.
 Status quantise(MapData& map, int bits, std::span<const Rounding> rounding);
 

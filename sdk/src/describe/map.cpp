@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array<std::string_view, 2> level_names = {"single", "pyramid"};
 constexpr std::array<std::string_view, 2> dimension_names = {"2d", "3d"};
-constexpr std::array<std::string_view, 3> rounding_names = {"nearest", "up", "down"};
+constexpr std::array<std::string_view, 4> rounding_names = {"nearest", "up", "down", "exact"};
 constexpr int max_layers = 256;
 
 bool is_glsl_identifier(std::string_view name) {
@@ -69,7 +69,8 @@ void read_rounding(TomlReader& reader, MapDescriptor& map) {
     if (found == rounding_names.end()) {
       reader.report(
           "describe.range",
-          fmt::format("\"rounding\" has {}; expected \"nearest\", \"up\" or \"down\" for each channel", quote(word)),
+          fmt::format("\"rounding\" has {}; expected \"nearest\", \"up\", \"down\" or \"exact\" for each channel",
+                      quote(word)),
           "rounding");
       return;
     }
@@ -84,14 +85,15 @@ void read_rounding(TomlReader& reader, MapDescriptor& map) {
 }
 
 void read_map(TomlReader& reader, MapDescriptor& map) {
-  reader.allow_keys({"schema", "name", "title", "source", "summary", "inputs", "channels", "levels", "dimension",
-                     "layers", "layers_parameter", "rounding", "sampler", "binding", "module", "access", "features",
-                     "loops", "parameters"});
+  reader.allow_keys({"schema",  "name",      "title",  "source",           "summary", "inputs",    "channels",
+                     "levels",  "dimension", "layers", "layers_parameter", "passes",  "rounding",  "sampler",
+                     "binding", "module",    "access", "features",         "loops",   "parameters"});
   map.inputs = reader.names("inputs");
   map.channels = reader.integer("channels", 1, 4);
   map.levels = reader.choice_of<MapLevels>("levels", level_names, MapLevels::single);
   read_layers(reader, map);
   read_rounding(reader, map);
+  if (reader.has("passes")) map.passes = reader.integer("passes", 1, max_layers);
   map.sampler = read_sampler(reader);
   read_binding(reader, map);
   map.module = reader.path_or_empty("module");

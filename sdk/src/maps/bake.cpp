@@ -16,7 +16,7 @@ namespace {
 struct BakeBlock {
   std::array<std::int32_t, 4> size;    // width, height, channels, level
   std::array<std::int32_t, 4> source;  // of the level below: width, height, offset; offset of this level, in texels
-  std::array<std::int32_t, 4> layers;  // x: how many
+  std::array<std::int32_t, 4> layers;  // how many, pass
 };
 
 constexpr int bake_block_binding = 1, bake_texels_binding = 2;
@@ -32,14 +32,14 @@ std::map<std::string, double> values_of(const std::map<std::string, double>& val
   return own;
 }
 
-BakeBlock bake_block(const MapData& output, int level) {
+BakeBlock bake_block(const MapData& output, int level, int pass) {
   MapLevel here = map_level(output, level), below = map_level(output, std::max(0, level - 1));
   return {{here.width, here.height, output.channels, level},
           {below.width, below.height, static_cast<std::int32_t>(below.offset), static_cast<std::int32_t>(here.offset)},
-          {output.depth, 0, 0, 0}};
+          {output.depth, pass, 0, 0}};
 }
 
-/// One dispatch a level: a command sees what earlier ones wrote.
+/// One dispatch a level and pass: a command sees what earlier ones wrote.
 Job bake_job(const PreparedProgram& prepared, const MapDescriptor& descriptor, const MapSet& maps,
              const MapData& output) {
   Job job;
@@ -50,10 +50,10 @@ Job bake_job(const PreparedProgram& prepared, const MapDescriptor& descriptor, c
   bind_parameters(prepared.composed, job, shared);
   Buffer result{"MapTexels", texel_count(output) * static_cast<std::size_t>(output.channels) * sizeof(float), {}};
   int index = bind_buffer(0, bake_texels_binding, std::move(result), job, shared);
-  for (int level = 0; level < output.levels; ++level) {
+  for (int k = 0; k < output.levels * descriptor.passes; ++k) {
     Dispatch dispatch;
     dispatch.resources = shared;
-    BakeBlock block = bake_block(output, level);
+    BakeBlock block = bake_block(output, k / descriptor.passes, k % descriptor.passes);
     bind_buffer(0, bake_block_binding, make_buffer("Bake", &block, sizeof(block)), job, dispatch.resources);
     keep_contract(prepared.program, dispatch.resources);
     auto groups = [](int extent) { return (static_cast<std::uint32_t>(extent) + bake_group - 1) / bake_group; };

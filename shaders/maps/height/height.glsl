@@ -1,9 +1,6 @@
 // Height access. Filter `hardware` asks the texture unit (about 8 fractional bits); `exact` reads the four texels and
 // interpolates in float. Texel (i,j) is centred at ((i + 1/2)/W, (j + 1/2)/H).
-#include "shaders/lib/ray.glsl"
-
-// i modulo n in [0, n). GLSL leaves `%` undefined on negative operands, and drivers differ there.
-int relievo_modulo(int i, int n) { return i >= 0 ? i % n : n - 1 - (-1 - i) % n; }
+#include "shaders/lib/fold.glsl"
 
 int relievo_wrap_texel(int i, int extent) {
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT

@@ -1,0 +1,49 @@
+// Cells of the endless surface brought back to those of the map. Cell (i, j) lies between the texels i, i+1 and j, j+1.
+// What a map says of a cell and of what lies ahead of it holds for the folded cell and the folded heading too:
+//
+// repeat: cell i + kW is cell i.
+// mirror: every other tile runs backwards, so headings turn there; the flat cell −1 between two copies of texel 0 takes what
+//         cell 0 has for the positive heading, which sees the same cells and one more.
+// clamp, clip: beyond the edge nothing changes along the axis; the outermost cell sees all that the cells beyond it see.
+#include "ray.glsl"
+
+// i modulo n in [0, n). GLSL leaves `%` undefined on negative operands, and drivers differ there.
+int relievo_modulo(int i, int n) { return i >= 0 ? i % n : n - 1 - (-1 - i) % n; }
+
+struct FoldedCell {
+  vec2 cell;     // whole numbers in [0, extent)
+  vec2 heading;  // each +1 or −1
+};
+
+FoldedCell relievo_fold_cell(vec2 cell, vec2 extent, vec2 heading) {
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
+  precise vec2 folded = cell - extent * floor((cell + 0.5) / extent);
+  return FoldedCell(folded, heading);
+#elif RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR
+  precise vec2 phase = cell - 2.0 * extent * floor((cell + 0.5) / (2.0 * extent));
+  bvec2 backwards = greaterThanEqual(phase, extent);
+  bvec2 flat_cell = equal(phase, 2.0 * extent - 1.0);
+  vec2 turned = mix(heading, -heading, vec2(backwards));
+  return FoldedCell(max(mix(phase, 2.0 * extent - 2.0 - phase, vec2(backwards)), vec2(0.0)),
+                    mix(turned, vec2(1.0), vec2(flat_cell)));
+#else
+  return FoldedCell(clamp(cell, vec2(0.0), extent - 1.0), heading);
+#endif
+}
+
+int relievo_quadrant(vec2 heading) { return (heading.x < 0.0 ? 1 : 0) + (heading.y < 0.0 ? 2 : 0); }
+
+ivec2 relievo_heading(int quadrant) { return ivec2((quadrant & 1) != 0 ? -1 : 1, (quadrant & 2) != 0 ? -1 : 1); }
+
+// The same for texels: whole numbers of at most some millions. Floats, since integer division is slow where it is emulated.
+ivec2 relievo_fold_texel(vec2 texel, vec2 extent) {
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
+  precise vec2 folded = texel - extent * floor((texel + 0.5) / extent);
+  return ivec2(folded);
+#elif RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR
+  precise vec2 phase = texel - 2.0 * extent * floor((texel + 0.5) / (2.0 * extent));
+  return ivec2(min(phase, 2.0 * extent - 1.0 - phase));
+#else
+  return ivec2(clamp(texel, vec2(0.0), extent - 1.0));
+#endif
+}

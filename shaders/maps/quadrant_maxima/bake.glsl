@@ -1,0 +1,36 @@
+// Pass 0: the greatest of the four corners of a cell, which bounds its bilinear patch. Pass k: a window of r^k cells is r × r
+// windows of r^(k-1) cells. Reads beyond the map are folded back into it, with the quadrant's direction where it runs backwards.
+#include "shaders/lib/bake.glsl"
+#include "shaders/lib/fold.glsl"
+
+float quadrant_maxima_cell(ivec2 cell) {
+  ivec2 extent = textureSize(relievo_height_map, 0);
+  float low = max(relievo_height_texel(cell, extent), relievo_height_texel(cell + ivec2(1, 0), extent));
+  float high = max(relievo_height_texel(cell + ivec2(0, 1), extent), relievo_height_texel(cell + ivec2(1, 1), extent));
+  return max(low, high);
+}
+
+float quadrant_maxima_below(ivec2 cell, ivec2 heading, int channel) {
+  ivec2 extent = relievo_bake_extent();
+  FoldedCell folded = relievo_fold_cell(vec2(cell), vec2(extent), vec2(heading));
+  return relievo_bake_read(ivec2(folded.cell), relievo_quadrant(folded.heading), channel);
+}
+
+void relievo_bake(ivec2 texel) {
+  int pass = relievo_bake_pass();
+  if (pass == 0) {
+    relievo_bake_write(texel, 0, quadrant_maxima_cell(texel));
+    return;
+  }
+  ivec2 heading = relievo_heading(relievo_bake_layer());
+  int stride = 1;
+  for (int k = 1; k < pass; ++k) stride *= quadrant_maxima_ratio;
+  float greatest = 0.0;
+  for (int j = 0; j < quadrant_maxima_ratio; ++j) {
+    for (int i = 0; i < quadrant_maxima_ratio; ++i) {
+      ivec2 offset = stride * ivec2(i, j) * heading;
+      greatest = max(greatest, quadrant_maxima_below(texel + offset, heading, pass - 1));
+    }
+  }
+  relievo_bake_write(texel, pass, greatest);
+}

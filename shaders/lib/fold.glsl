@@ -7,9 +7,6 @@
 // clamp, clip: beyond the edge nothing changes along the axis; the outermost cell sees all that the cells beyond it see.
 #include "ray.glsl"
 
-// i modulo n in [0, n). GLSL leaves `%` undefined on negative operands, and drivers differ there.
-int relievo_modulo(int i, int n) { return i >= 0 ? i % n : n - 1 - (-1 - i) % n; }
-
 struct FoldedCell {
   vec2 cell;     // whole numbers in [0, extent)
   vec2 heading;  // each +1 or −1
@@ -35,15 +32,18 @@ int relievo_quadrant(vec2 heading) { return (heading.x < 0.0 ? 1 : 0) + (heading
 
 ivec2 relievo_heading(int quadrant) { return ivec2((quadrant & 1) != 0 ? -1 : 1, (quadrant & 2) != 0 ? -1 : 1); }
 
-// The same for texels: whole numbers of at most some millions. Floats, since integer division is slow where it is emulated.
-ivec2 relievo_fold_texel(vec2 texel, vec2 extent) {
+// The same for texels. Whole numbers in floats, since integer division is slow where it is emulated: exact up to
+// 2^23 texels, and within the map for all.
+vec2 relievo_fold_whole(vec2 texel, vec2 extent) {
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
   precise vec2 folded = texel - extent * floor((texel + 0.5) / extent);
-  return ivec2(folded);
 #elif RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR
   precise vec2 phase = texel - 2.0 * extent * floor((texel + 0.5) / (2.0 * extent));
-  return ivec2(min(phase, 2.0 * extent - 1.0 - phase));
+  vec2 folded = min(phase, 2.0 * extent - 1.0 - phase);
 #else
-  return ivec2(clamp(texel, vec2(0.0), extent - 1.0));
+  vec2 folded = texel;
 #endif
+  return clamp(folded, vec2(0.0), extent - 1.0);
 }
+
+ivec2 relievo_fold_texel(vec2 texel, vec2 extent) { return ivec2(relievo_fold_whole(texel, extent)); }

@@ -44,18 +44,13 @@ float exact_leave(TileAxis axis, int first, int end) {
   return t;
 }
 
-vec4 exact_corners(ivec2 cell, ivec2 extent) {
-  return vec4(relievo_height_texel(cell, extent), relievo_height_texel(cell + ivec2(1, 0), extent),
-              relievo_height_texel(cell + ivec2(0, 1), extent), relievo_height_texel(cell + ivec2(1, 1), extent));
-}
-
 // The first hit in the walk's cell between t and `leave`, as t; or RELIEVO_NEVER.
 float exact_solve(Ray ray, ExactWalk walk, float leave) {
   precise vec2 from = clamp(exact_position(walk, walk.t) - vec2(walk.cell), 0.0, 1.0);
   precise vec2 to = clamp(exact_position(walk, leave) - vec2(walk.cell), 0.0, 1.0);
   precise float from_height = ray.origin.z + walk.t * ray.direction.z;
   precise float to_height = ray.origin.z + leave * ray.direction.z;
-  float share = relievo_cell_hit(exact_corners(walk.cell, walk.extent), vec3(from, from_height), vec3(to, to_height));
+  float share = relievo_cell_hit(relievo_height_corners(vec2(walk.cell), vec2(walk.extent)), vec3(from, from_height), vec3(to, to_height));
   return share <= 1.0 ? walk.t + share * (leave - walk.t) : RELIEVO_NEVER;
 }
 

@@ -7,31 +7,13 @@
 // inner one only reads windows, and cells are solved outside it, when every ray has got to one.
 #include "shaders/lib/walk.glsl"
 
-struct QuadrantMaximaRay {
-  vec2 heading;
-  vec2 pace;   // s a cell
-  float fall;  // s a unit of H; without end for rays that do not fall
-  vec4 widths;
-};
-
-QuadrantMaximaRay quadrant_maxima_ray(Walk walk) {
-  QuadrantMaximaRay constants;
-  constants.heading = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(walk.slope, vec2(0.0)));
-  precise vec2 pace = 1.0 / max(abs(walk.slope), vec2(1.0 / RELIEVO_WALK_NEVER));
-  precise float fall = 1.0 / max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER);
-  constants.pace = pace;
-  constants.fall = fall;
-  constants.widths = relievo_quadrant_maxima_widths();
-  return constants;
-}
-
-// How far the ray is let through from where it is; `border`: how far it is to the cell's border.
-float quadrant_maxima_free(Walk walk, QuadrantMaximaRay constants, out float border) {
-  vec4 greatest = relievo_quadrant_maxima_at(relievo_fold_cell(walk.cell, walk.extent, constants.heading));
-  vec2 inside = mix(1.0 - walk.fraction, walk.fraction, greaterThanEqual(constants.heading, vec2(0.0)));
-  precise vec4 borders =
-      min((constants.widths - inside.x) * constants.pace.x, (constants.widths - inside.y) * constants.pace.y);
-  precise vec4 sink = (walk.height - greatest) * constants.fall;
+// How far the ray is let through; `border`: how far it is to the cell's border. `fall`: s a unit of H.
+float quadrant_maxima_free(Walk walk, WalkPlace place, float fall, out float border) {
+  vec4 widths = relievo_quadrant_maxima_widths();
+  vec4 greatest = relievo_quadrant_maxima_at(relievo_fold_cell(place.cell, walk.extent, walk.heading));
+  vec2 behind = mix(1.0 - place.fraction, place.fraction, greaterThanEqual(walk.heading, vec2(0.0)));
+  precise vec4 borders = min((widths - behind.x) * walk.pace.x, (widths - behind.y) * walk.pace.y);
+  precise vec4 sink = (place.height - greatest) * fall;
   vec4 free = min(borders, sink);
   border = borders.x;
   return max(max(free.x, free.y), max(free.z, free.w));
@@ -46,25 +28,37 @@ Hit quadrant_maxima_trace(Ray ray) {
   if (!relievo_walk_start(ray, interval, textureSize(relievo_cell_corners_map, 0), walk)) {
     return relievo_hit_at(ray, RELIEVO_EXHAUSTED, interval.enter);
   }
-  if (relievo_walk_starts_inside(interval, walk)) return relievo_hit_at(ray, RELIEVO_INSIDE, 0.0);
-  QuadrantMaximaRay constants = quadrant_maxima_ray(walk);
+  precise float fall = 1.0 / max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER);
+  vec2 s = vec2(0.0);
   int steps = quadrant_maxima_max_steps;
+  float hit = RELIEVO_WALK_NEVER;
+  bool starts_inside = false;
   while (steps > 0) {
-    float border = 0.0;
     while (steps > 0) {
       --steps;
       RELIEVO_COUNT_STEP();
-      float free = quadrant_maxima_free(walk, constants, border);
+      float border;
+      float free = quadrant_maxima_free(walk, relievo_walk_place(walk, s), fall, border);
       if (free < border) break;
-      relievo_walk_on(walk, free + RELIEVO_WALK_MARGIN);
-      if (relievo_walk_left(walk) <= 0.0) return relievo_end_of(ray, interval);
+      s = relievo_walk_on(s, free + RELIEVO_WALK_MARGIN);
+      if (relievo_walk_left(walk, s) <= 0.0) break;
     }
-    if (steps == 0) break;
-    vec4 corners = relievo_cell_corners_at(walk.cell, walk.extent);
-    float hit = relievo_walk_solve(walk, corners, min(border, relievo_walk_left(walk)));
-    if (hit < RELIEVO_WALK_NEVER) return relievo_walk_hit(ray, walk, hit);
-    relievo_walk_on(walk, border + RELIEVO_WALK_MARGIN);
-    if (relievo_walk_left(walk) <= 0.0) return relievo_end_of(ray, interval);
+    if (s != vec2(0.0) && relievo_walk_left(walk, s) <= 0.0) break;
+    WalkPlace place = relievo_walk_place(walk, s);
+    vec4 corners = relievo_cell_corners_at(place.cell, walk.extent);
+    float border = relievo_walk_border(walk, place);
+    hit = relievo_walk_solve(walk, place, corners, min(border, max(relievo_walk_left(walk, s), 0.0)));
+    if (hit < RELIEVO_WALK_NEVER) {
+      starts_inside = s == vec2(0.0) && relievo_cell_clearance(corners, vec3(place.fraction, place.height)) < 0.0;
+      break;
+    }
+    s = relievo_walk_on(s, border + RELIEVO_WALK_MARGIN);
+    if (relievo_walk_left(walk, s) <= 0.0) break;
   }
-  return relievo_hit_at(ray, RELIEVO_EXHAUSTED, relievo_walk_t(walk));
+  if (hit < RELIEVO_WALK_NEVER) {
+    if (starts_inside && interval.enter == 0.0) return relievo_hit_at(ray, RELIEVO_INSIDE, 0.0);
+    return relievo_walk_hit(ray, walk, relievo_walk_on(s, hit));
+  }
+  if (relievo_walk_left(walk, s) <= 0.0) return relievo_end_of(ray, interval);
+  return relievo_hit_at(ray, RELIEVO_EXHAUSTED, relievo_walk_t(walk, s));
 }

@@ -22,13 +22,20 @@ struct BakeBlock {
 constexpr int bake_block_binding = 1, bake_texels_binding = 2;
 constexpr std::uint32_t bake_group = 8;
 
-std::map<std::string, double> values_of(const std::map<std::string, double>& values, const MapDescriptor& map) {
-  std::map<std::string, double> own;
-  for (const auto& [name, value] : values) {
-    bool of_map = name.starts_with(map.name + ".");
-    for (const std::string& input : map.inputs) of_map = of_map || name.starts_with(input + ".");
-    if (of_map) own[name] = value;
+/// The values of the map's own parameters. A technique may have the map's name, and parameters of its own.
+void add_values_of(const MapDescriptor& map, const std::map<std::string, double>& values,
+                   std::map<std::string, double>& own) {
+  for (const Parameter& parameter : map.parameters) {
+    const auto found = values.find(fmt::format("{}.{}", map.name, parameter.name));
+    if (found != values.end()) own.insert(*found);
   }
+}
+
+std::map<std::string, double> values_for_bake(const Registry& registry, const MapDescriptor& map,
+                                              const std::map<std::string, double>& values) {
+  std::map<std::string, double> own;
+  add_values_of(map, values, own);
+  for (const std::string& input : map.inputs) add_values_of(registry.maps.find(input)->second, values, own);
   return own;
 }
 
@@ -96,7 +103,8 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
     if (Status status = bake_map(backend, registry, input, maps, values, messages); !status) return status;
   }
   const MapData& height = maps.find("height")->second;
-  Result<ComposedProgram> composed = compose_bake(registry, name, height.address, values_of(values, descriptor));
+  Result<ComposedProgram> composed =
+      compose_bake(registry, name, height.address, values_for_bake(registry, descriptor, values));
   if (!composed) return tl::unexpected(composed.error());
   Result<PreparedProgram> prepared = prepare_composed(std::move(*composed), backend.info().shader_target);
   if (!prepared) return tl::unexpected(prepared.error());

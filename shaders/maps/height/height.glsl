@@ -2,21 +2,17 @@
 // interpolates in float. Texel (i,j) is centred at ((i + 1/2)/W, (j + 1/2)/H).
 #include "shaders/lib/fold.glsl"
 
-int relievo_wrap_texel(int i, int extent) {
-#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
-  return relievo_modulo(i, extent);
-#elif RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR
-  int r = relievo_modulo(i, 2 * extent);
-  return r < extent ? r : 2 * extent - 1 - r;
-#else
-  return clamp(i, 0, extent - 1);
-#endif
-}
-
 float relievo_height_texel(ivec2 texel, ivec2 extent) {
   RELIEVO_COUNT_FETCHES(1);
-  ivec2 wrapped = ivec2(relievo_wrap_texel(texel.x, extent.x), relievo_wrap_texel(texel.y, extent.y));
-  return texelFetch(relievo_height_map, wrapped, 0).r;
+  return texelFetch(relievo_height_map, relievo_fold_texel(vec2(texel), vec2(extent)), 0).r;
+}
+
+// The heights at the corners 00, 10, 01, 11 of a cell.
+vec4 relievo_height_corners(vec2 cell, vec2 extent) {
+  RELIEVO_COUNT_FETCHES(4);
+  ivec2 low = relievo_fold_texel(cell, extent), high = relievo_fold_texel(cell + 1.0, extent);
+  return vec4(texelFetch(relievo_height_map, low, 0).r, texelFetch(relievo_height_map, ivec2(high.x, low.y), 0).r,
+              texelFetch(relievo_height_map, ivec2(low.x, high.y), 0).r, texelFetch(relievo_height_map, high, 0).r);
 }
 
 float relievo_height_at(vec2 uv) {
@@ -25,9 +21,7 @@ float relievo_height_at(vec2 uv) {
   precise vec2 position = clamp(uv * vec2(extent) - 0.5, vec2(-1.0e9), vec2(1.0e9));
   vec2 cell = floor(position);
   precise vec2 f = position - cell;
-  ivec2 texel = ivec2(cell);
-  vec4 corners = vec4(relievo_height_texel(texel, extent), relievo_height_texel(texel + ivec2(1, 0), extent),
-                      relievo_height_texel(texel + ivec2(0, 1), extent), relievo_height_texel(texel + ivec2(1, 1), extent));
+  vec4 corners = relievo_height_corners(cell, vec2(extent));
   precise vec2 rows = corners.xz + f.x * (corners.yw - corners.xz);
   precise float height = rows.x + f.y * (rows.y - rows.x);
   return height;

@@ -24,8 +24,8 @@ Status at_most(std::string what, std::int64_t given, std::int64_t allowed) {
 }
 
 Status check_texture(const Texture& texture, const Limits& limits) {
-  const std::int64_t edge = std::max({texture.width, texture.height, texture.depth});
-  const bool is_3d = texture.is_3d || texture.depth > 1;
+  const bool is_3d = !texture.is_array && (texture.is_3d || texture.depth > 1);
+  const std::int64_t edge = std::max({texture.width, texture.height, is_3d ? texture.depth : 1});
   auto status = at_most(fmt::format("the longest edge of texture '{}'", texture.name), edge,
                         is_3d ? limits.texture_3d_size : limits.texture_size);
   if (!status) return status;

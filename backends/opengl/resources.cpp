@@ -12,8 +12,14 @@ std::size_t padded_size(const Buffer& buffer) {
   return (buffer.size + 15) / 16 * 16;
 }
 
-bool is_3d(const Texture& texture) {
-  return texture.is_3d || texture.depth > 1;
+/// With three coordinates: a 3D texture, or an array.
+bool is_deep(const Texture& texture) {
+  return texture.is_array || texture.is_3d || texture.depth > 1;
+}
+
+GLenum target_of(const Texture& texture) {
+  if (texture.is_array) return GL_TEXTURE_2D_ARRAY;
+  return is_deep(texture) ? GL_TEXTURE_3D : GL_TEXTURE_2D;
 }
 
 int level_extent(int extent, int level) {
@@ -37,7 +43,7 @@ void upload_level(GLuint name, const Texture& texture, int level) {
   }
   const int width = level_extent(texture.width, level), height = level_extent(texture.height, level);
   const std::byte* bytes = texture.data[level].data();
-  if (is_3d(texture)) {
+  if (is_deep(texture)) {
     glTextureSubImage3D(name, level, 0, 0, 0, width, height, level_extent(texture.depth, level), format.external,
                         format.type, bytes);
   } else {
@@ -48,8 +54,8 @@ void upload_level(GLuint name, const Texture& texture, int level) {
 TextureHandle upload_texture(const Texture& texture) {
   const GLenum internal = gl_format(texture.format).internal;
   GLuint name = 0;
-  glCreateTextures(is_3d(texture) ? GL_TEXTURE_3D : GL_TEXTURE_2D, 1, &name);
-  if (is_3d(texture)) {
+  glCreateTextures(target_of(texture), 1, &name);
+  if (is_deep(texture)) {
     glTextureStorage3D(name, texture.levels, internal, texture.width, texture.height, texture.depth);
   } else {
     glTextureStorage2D(name, texture.levels, internal, texture.width, texture.height);

@@ -11,7 +11,12 @@ namespace {
 constexpr VkImageUsageFlags transfers = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 
 bool is_3d(const Texture& texture) {
-  return texture.is_3d || texture.depth > 1;
+  return !texture.is_array && (texture.is_3d || texture.depth > 1);
+}
+
+VkImageViewType view_type(const Texture& texture) {
+  if (texture.is_array) return VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+  return is_3d(texture) ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D;
 }
 
 template <class Made>
@@ -64,13 +69,13 @@ Unique<VkSampler> create_sampler(const Device& device, const Texture& texture) {
 }
 
 Unique<VkImageView> create_view(const Device& device, const Texture& texture, VkImage image, int levels) {
-  const VkImageViewCreateInfo info = {
-      .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-      .image = image,
-      .viewType = is_3d(texture) ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D,
-      .format = image_format(texture.format),
-      .subresourceRange = {
-          .aspectMask = aspect(texture.format), .levelCount = static_cast<std::uint32_t>(levels), .layerCount = 1}};
+  const VkImageViewCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                      .image = image,
+                                      .viewType = view_type(texture),
+                                      .format = image_format(texture.format),
+                                      .subresourceRange = {.aspectMask = aspect(texture.format),
+                                                           .levelCount = static_cast<std::uint32_t>(levels),
+                                                           .layerCount = layer_count(texture)}};
   return device.create(device.vk.vkCreateImageView, device.vk.vkDestroyImageView, info,
                        fmt::format("creating a view of texture \"{}\"", texture.name));
 }
@@ -81,7 +86,7 @@ VkImageCreateInfo image_info(const Texture& texture, VkImageUsageFlags usage) {
           .format = image_format(texture.format),
           .extent = level_extent(texture, 0),
           .mipLevels = static_cast<std::uint32_t>(texture.levels),
-          .arrayLayers = 1,
+          .arrayLayers = layer_count(texture),
           .samples = VK_SAMPLE_COUNT_1_BIT,
           .tiling = VK_IMAGE_TILING_OPTIMAL,
           .usage = usage};
@@ -142,7 +147,11 @@ std::vector<VkImageUsageFlags> texture_usages(const Job& job) {
 
 VkExtent3D level_extent(const Texture& texture, int level) {
   const auto extent = [level](int size) { return static_cast<std::uint32_t>(std::max(1, size >> level)); };
-  return {extent(texture.width), extent(texture.height), extent(texture.depth)};
+  return {extent(texture.width), extent(texture.height), texture.is_array ? 1 : extent(texture.depth)};
+}
+
+std::uint32_t layer_count(const Texture& texture) {
+  return texture.is_array ? static_cast<std::uint32_t>(texture.depth) : 1;
 }
 
 DeviceImage create_image(const Device& device, const Texture& texture, VkImageUsageFlags usage) {

@@ -16,4 +16,7 @@ DeviceImage create_image(const Device& device, const Texture& texture, VkImageUs
 
 VkExtent3D level_extent(const Texture& texture, int level);
 
+/// Of an array; 1 for other textures.
+std::uint32_t layer_count(const Texture& texture);
+
 }  // namespace relievo::vulkan

@@ -95,8 +95,9 @@ void Resources::upload_texture(VkCommandBuffer commands, std::size_t index) {
 void Resources::clear_texture(VkCommandBuffer commands, std::size_t index) {
   const Texture& texture = job_.textures[index];
   const DeviceImage& image = images_[index];
-  const VkImageSubresourceRange range = {
-      .aspectMask = aspect(texture.format), .levelCount = static_cast<std::uint32_t>(texture.levels), .layerCount = 1};
+  const VkImageSubresourceRange range = {.aspectMask = aspect(texture.format),
+                                         .levelCount = static_cast<std::uint32_t>(texture.levels),
+                                         .layerCount = layer_count(texture)};
   const VkClearColorValue black = {};
   const VkClearDepthStencilValue near = {};
   if (texture.format == Format::d32_float) {
@@ -172,7 +173,7 @@ void Resources::barrier(VkCommandBuffer commands, std::span<const Transition> tr
          .image = changed.image.get(),
          .subresourceRange = {.aspectMask = aspect(job_.textures[static_cast<std::size_t>(index)].format),
                               .levelCount = VK_REMAINING_MIP_LEVELS,
-                              .layerCount = 1}});
+                              .layerCount = VK_REMAINING_ARRAY_LAYERS}});
   }
   memory_barrier(device_, commands, barriers, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                  VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
@@ -182,7 +183,7 @@ VkBufferImageCopy Resources::copy_of(const Texture& texture, int level, std::siz
   return {.bufferOffset = offset,
           .imageSubresource = {.aspectMask = aspect(texture.format),
                                .mipLevel = static_cast<std::uint32_t>(level),
-                               .layerCount = 1},
+                               .layerCount = layer_count(texture)},
           .imageExtent = level_extent(texture, level)};
 }
 

@@ -7,6 +7,13 @@
 // clamp, clip: beyond the edge nothing changes along the axis; the outermost cell sees all that the cells beyond it see.
 #include "ray.glsl"
 
+// x / extent, rounded down, for whole x of at most 2^21 in size: half a unit keeps the rounding of the product away from the
+// whole numbers.
+vec2 relievo_fold_periods(vec2 x, vec2 period) {
+  precise vec2 periods = floor((x + 0.5) * (1.0 / period));
+  return periods;
+}
+
 struct FoldedCell {
   vec2 cell;     // whole numbers in [0, extent)
   vec2 heading;  // each +1 or −1
@@ -14,10 +21,10 @@ struct FoldedCell {
 
 FoldedCell relievo_fold_cell(vec2 cell, vec2 extent, vec2 heading) {
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
-  precise vec2 folded = cell - extent * floor((cell + 0.5) / extent);
+  precise vec2 folded = cell - extent * relievo_fold_periods(cell, extent);
   return FoldedCell(folded, heading);
 #elif RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR
-  precise vec2 phase = cell - 2.0 * extent * floor((cell + 0.5) / (2.0 * extent));
+  precise vec2 phase = cell - 2.0 * extent * relievo_fold_periods(cell, 2.0 * extent);
   bvec2 backwards = greaterThanEqual(phase, extent);
   bvec2 flat_cell = equal(phase, 2.0 * extent - 1.0);
   vec2 turned = mix(heading, -heading, vec2(backwards));
@@ -33,12 +40,12 @@ int relievo_quadrant(vec2 heading) { return (heading.x < 0.0 ? 1 : 0) + (heading
 ivec2 relievo_heading(int quadrant) { return ivec2((quadrant & 1) != 0 ? -1 : 1, (quadrant & 2) != 0 ? -1 : 1); }
 
 // The same for texels. Whole numbers in floats, since integer division is slow where it is emulated: exact up to
-// 2^23 texels, and within the map for all.
+// 2^21 texels, and within the map for all.
 vec2 relievo_fold_whole(vec2 texel, vec2 extent) {
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
-  precise vec2 folded = texel - extent * floor((texel + 0.5) / extent);
+  precise vec2 folded = texel - extent * relievo_fold_periods(texel, extent);
 #elif RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR
-  precise vec2 phase = texel - 2.0 * extent * floor((texel + 0.5) / (2.0 * extent));
+  precise vec2 phase = texel - 2.0 * extent * relievo_fold_periods(texel, 2.0 * extent);
   vec2 folded = min(phase, 2.0 * extent - 1.0 - phase);
 #else
   vec2 folded = texel;

@@ -21,6 +21,7 @@ struct Walk {
   float end;           // s where the interval ends
   vec2 heading;        // each +1 or −1
   vec2 pace;           // s a cell
+  vec2 behind_at_zero; // |this − fraction| is how much of the cell lies behind
 };
 
 struct WalkPlace {
@@ -33,7 +34,7 @@ struct WalkPlace {
 // the far side, where a point below the surface is a hit.
 const float RELIEVO_WALK_MARGIN = 1.0e-6;
 const float RELIEVO_WALK_NEVER = 1.0e30;  // s of an event that does not occur; times 1024 it is still finite
-const float RELIEVO_WALK_FAR = 4.0e6;     // texels: half of where floats stop to tell cells apart
+const float RELIEVO_WALK_FAR = 1.0e6;     // texels: cells are folded exactly up to twice as far
 
 // a · b as a sum of two floats (Dekker 1971), for |a|, |b| < 2^100.
 void relievo_two_product(vec2 a, vec2 b, out vec2 product, out vec2 error) {
@@ -95,6 +96,7 @@ bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk)
   precise float end = (interval.exit - interval.enter) * speed;
   walk.end = end;
   walk.heading = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(slope, vec2(0.0)));
+  walk.behind_at_zero = mix(vec2(1.0), vec2(0.0), greaterThanEqual(slope, vec2(0.0)));
   precise vec2 pace = 1.0 / max(abs(slope), vec2(1.0 / RELIEVO_WALK_NEVER));
   walk.pace = pace;
   vec2 reach = max(abs(start), abs(move));
@@ -129,10 +131,9 @@ float relievo_walk_left(Walk walk, vec2 s) {
   return left;
 }
 
-// How far it is to the borders that lie `width` cells ahead of where the cell begins.
+// How far it is to the cell's border.
 float relievo_walk_border(Walk walk, WalkPlace place) {
-  vec2 ahead = mix(place.fraction, 1.0 - place.fraction, greaterThanEqual(walk.heading, vec2(0.0)));
-  precise vec2 border = ahead * walk.pace;
+  precise vec2 border = (1.0 - abs(walk.behind_at_zero - place.fraction)) * walk.pace;
   return min(border.x, border.y);
 }
 

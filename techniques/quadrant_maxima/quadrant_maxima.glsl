@@ -1,5 +1,5 @@
 // Each step reads, for the cell that the ray is in and the quadrant that it heads for, the greatest heights E over windows of
-// 1, r, r² and r³ cells ahead. Within a window the ray cannot meet the surface before it falls to E: it goes on to there or to
+// 1, n, nr and nr² cells ahead. Within a window the ray cannot meet the surface before it falls to E: it goes on to there or to
 // the window's border, whichever comes first, in the window that lets it go furthest. Where not even the cell lets it
 // through, the cell is solved.
 //
@@ -7,13 +7,24 @@
 // inner one only reads windows, and cells are solved outside it, when every ray has got to one.
 #include "shaders/lib/walk.glsl"
 
-// How far the ray is let through; `border`: how far it is to the cell's border. `fall`: s a unit of H.
-float quadrant_maxima_free(Walk walk, WalkPlace place, float fall, out float border) {
+struct QuadrantMaximaPace {
+  vec4 u, v;   // s from a window's begin to its end
+  float fall;  // s a unit of H, if the ray falls
+};
+
+QuadrantMaximaPace quadrant_maxima_pace(Walk walk) {
   vec4 widths = relievo_quadrant_maxima_widths();
+  precise vec4 u = widths * walk.pace.x, v = widths * walk.pace.y;
+  precise float fall = 1.0 / max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER);
+  return QuadrantMaximaPace(u, v, fall);
+}
+
+// How far the ray is let through; `border`: how far it is to the cell's border.
+float quadrant_maxima_free(Walk walk, QuadrantMaximaPace pace, WalkPlace place, out float border) {
   vec4 greatest = relievo_quadrant_maxima_at(relievo_fold_cell(place.cell, walk.extent, walk.heading));
-  vec2 behind = mix(1.0 - place.fraction, place.fraction, greaterThanEqual(walk.heading, vec2(0.0)));
-  precise vec4 borders = min((widths - behind.x) * walk.pace.x, (widths - behind.y) * walk.pace.y);
-  precise vec4 sink = (place.height - greatest) * fall;
+  precise vec2 behind = abs(walk.behind_at_zero - place.fraction) * walk.pace;
+  precise vec4 borders = min(pace.u - behind.x, pace.v - behind.y);
+  precise vec4 sink = (place.height - greatest) * pace.fall;
   vec4 free = min(borders, sink);
   border = borders.x;
   return max(max(free.x, free.y), max(free.z, free.w));
@@ -28,7 +39,7 @@ Hit quadrant_maxima_trace(Ray ray) {
   if (!relievo_walk_start(ray, interval, textureSize(relievo_cell_corners_map, 0), walk)) {
     return relievo_hit_at(ray, RELIEVO_EXHAUSTED, interval.enter);
   }
-  precise float fall = 1.0 / max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER);
+  QuadrantMaximaPace pace = quadrant_maxima_pace(walk);
   vec2 s = vec2(0.0);
   int steps = quadrant_maxima_max_steps;
   float hit = RELIEVO_WALK_NEVER;
@@ -38,7 +49,7 @@ Hit quadrant_maxima_trace(Ray ray) {
       --steps;
       RELIEVO_COUNT_STEP();
       float border;
-      float free = quadrant_maxima_free(walk, relievo_walk_place(walk, s), fall, border);
+      float free = quadrant_maxima_free(walk, pace, relievo_walk_place(walk, s), border);
       if (free < border) break;
       s = relievo_walk_on(s, free + RELIEVO_WALK_MARGIN);
       if (relievo_walk_left(walk, s) <= 0.0) break;

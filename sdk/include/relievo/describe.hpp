@@ -62,6 +62,10 @@ struct TechniqueDescriptor {
 enum class MapLevels { single, pyramid };
 std::string_view to_string(MapLevels levels);
 
+/// sampler2D, sampler2DArray, sampler3D. The last two have `single` levels only.
+enum class MapDimension { flat, array, volume };
+std::string_view to_string(MapDimension dimension);
+
 /// Which way a quantised value may move, so that what a technique concludes from it stays true. `exact`: not
 /// at all; the map takes as many bits as that needs.
 enum class Rounding { nearest, up, down, exact };
@@ -73,8 +77,8 @@ struct MapDescriptor {
   std::vector<std::string> inputs;  ///< other maps; empty for `height`, which the caller provides
   int channels = 1;                 ///< 1–4
   MapLevels levels = MapLevels::single;
-  bool is_3d = false;            ///< a sampler3D; `single` levels only
-  int layers = 1;                ///< texels along the third axis; or
+  MapDimension dimension = MapDimension::flat;
+  int layers = 1;                ///< of an array, or texels along the third axis; or
   std::string layers_parameter;  ///< the int parameter that says how many; empty = `layers`
   int passes = 1;  ///< times that the module runs over every level; later passes read what earlier ones wrote
   /// One a channel, for maps that have an int parameter `bits` (8, 16 or 32): 8 and 16 are stored as unorm. Empty:

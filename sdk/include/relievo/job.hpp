@@ -48,13 +48,15 @@ struct SamplerState {
   std::array<TexelAddress, 3> address = {TexelAddress::repeat, TexelAddress::repeat, TexelAddress::repeat};
 };
 
-/// A 2D or 3D texture with `levels` mips. Level k is max(1, extent >> k), rounded down, tightly packed, row 0 first;
-/// `data` has one entry a level, or is empty for undefined contents (render targets, storage).
+/// A 2D or 3D texture with `levels` mips, or a 2D array of one level. Level k is max(1, extent >> k), rounded down,
+/// tightly packed, row 0 first; `data` has one entry a level, or is empty for undefined contents (render targets,
+/// storage).
 struct Texture {
   std::string name;
   Format format = Format::rgba8_unorm;
   int width = 1, height = 1, depth = 1;  ///< texels; depth > 1 or is_3d: a 3D texture
   bool is_3d = false;
+  bool is_array = false;  ///< `depth` is the number of layers
   int levels = 1;
   std::vector<std::vector<std::byte>> data;
   SamplerState sampler;

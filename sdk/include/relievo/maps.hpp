@@ -21,8 +21,8 @@ struct MapData {
   std::vector<float> texels;
   AddressMode address = AddressMode::repeat;
   int levels = 1;
-  int depth = 1;  ///< layers of a 3D map, one after another; then levels is 1
-  bool is_3d = false;
+  int depth = 1;  ///< layers of an array or a 3D map, one after another; then levels is 1
+  MapDimension dimension = MapDimension::flat;
   /// 8, 16: every texel is k / (2^bits − 1) and the texture is unorm; 32: floats.
   int bits = 32;
 };

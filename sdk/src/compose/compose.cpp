@@ -99,8 +99,9 @@ std::string axis_macros(HeightFilter filter, AddressMode address, bool count, Ao
 Result<std::string> declare_maps(const std::vector<const MapDescriptor*>& maps, SourceExpander& expander) {
   std::string text;
   for (const MapDescriptor* map : maps) {
+    constexpr const char* samplers[] = {"sampler2D", "sampler2DArray", "sampler3D"};
     text += fmt::format("layout(set = {}, binding = {}) uniform highp {} {};\n", map->set, map->binding,
-                        map->is_3d ? "sampler3D" : "sampler2D", map->sampler);
+                        samplers[static_cast<int>(map->dimension)], map->sampler);
     if (map->access.empty()) continue;
     Result<std::string> access = expander.expand(map->access);
     if (!access) return access;

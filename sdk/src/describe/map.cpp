@@ -10,7 +10,7 @@ namespace relievo {
 namespace {
 
 constexpr std::array<std::string_view, 2> level_names = {"single", "pyramid"};
-constexpr std::array<std::string_view, 2> dimension_names = {"2d", "3d"};
+constexpr std::array<std::string_view, 3> dimension_names = {"2d", "2d_array", "3d"};
 constexpr std::array<std::string_view, 4> rounding_names = {"nearest", "up", "down", "exact"};
 constexpr int max_layers = 256;
 
@@ -42,17 +42,18 @@ void read_binding(TomlReader& reader, MapDescriptor& map) {
 
 /// A number, or the name of the parameter that holds it.
 void read_layers(TomlReader& reader, MapDescriptor& map) {
-  map.is_3d = reader.choice_of<int>("dimension", dimension_names, 0) == 1;
-  if (!map.is_3d) {
+  map.dimension = reader.choice_of<MapDimension>("dimension", dimension_names, MapDimension::flat);
+  if (map.dimension == MapDimension::flat) {
     for (std::string_view key : {"layers", "layers_parameter"}) {
       if (reader.has(key)) {
-        reader.report("describe.range", fmt::format("only a map of dimension \"3d\" has {}", quote(key)), key);
+        reader.report("describe.range",
+                      fmt::format("only a map of dimension \"2d_array\" or \"3d\" has {}", quote(key)), key);
       }
     }
     return;
   }
   if (map.levels != MapLevels::single) {
-    reader.report("describe.range", "a map of dimension \"3d\" has the levels \"single\"", "levels");
+    reader.report("describe.range", "a map with layers has the levels \"single\"", "levels");
   }
   if (reader.has("layers_parameter")) {
     map.layers_parameter = reader.name("layers_parameter");
@@ -109,6 +110,10 @@ void read_map(TomlReader& reader, MapDescriptor& map) {
 
 std::string_view to_string(MapLevels levels) {
   return level_names[static_cast<std::size_t>(levels)];
+}
+
+std::string_view to_string(MapDimension dimension) {
+  return dimension_names[static_cast<std::size_t>(dimension)];
 }
 
 std::string_view to_string(Rounding rounding) {

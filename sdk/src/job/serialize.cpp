@@ -26,7 +26,7 @@ void fields(Archive& a, SamplerState& s) {
 template <class Archive>
 void fields(Archive& a, Texture& t) {
   a("name", t.name), a("format", t.format), a("width", t.width), a("height", t.height), a("depth", t.depth);
-  a("is_3d", t.is_3d), a("levels", t.levels), a("data", t.data), a("sampler", t.sampler);
+  a("is_3d", t.is_3d), a("is_array", t.is_array), a("levels", t.levels), a("data", t.data), a("sampler", t.sampler);
 }
 
 template <class Archive>

@@ -120,10 +120,12 @@ void check_texture(Check& check, const Texture& texture) {
                      texture.levels, full_chain)) {
     return;
   }
+  check.require(!texture.is_array || (texture.levels == 1 && !texture.is_3d), "job.size",
+                "is an array with {} levels, expected a 2D array of one level", texture.levels);
   check.require(level_size(texture, 0) <= max_bytes, "job.size", "has {} bytes, expected at most {}",
                 level_size(texture, 0), max_bytes);
-  check.require(texture.format != Format::d32_float || !(texture.is_3d || texture.depth > 1), "job.format",
-                "is a 3D texture of d32_float, expected a 2D one");
+  check.require(texture.format != Format::d32_float || !(texture.is_3d || texture.is_array || texture.depth > 1),
+                "job.format", "is a 3D texture of d32_float, expected a 2D one");
   check_contents(check, texture);
 }
 

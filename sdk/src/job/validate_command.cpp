@@ -149,8 +149,8 @@ void check_target(Check& check, const Job& job, const Draw& draw, int index, boo
                              : target.format != Format::d32_float && channel_count(target.format) != 3;
   check.require(fits, "job.target", "target \"{}\" has format {}, expected {}", target.name, to_string(target.format),
                 expected);
-  check.require(!target.is_3d && target.depth == 1, "job.target", "target \"{}\" is a 3D texture, expected a 2D one",
-                target.name);
+  check.require(!target.is_3d && !target.is_array && target.depth == 1, "job.target",
+                "target \"{}\" is a 3D texture, expected a 2D one", target.name);
   check.require(target.width == reference.width && target.height == reference.height, "job.target",
                 "target \"{}\" is {}x{} texels, expected {}x{} as \"{}\"", target.name, target.width, target.height,
                 reference.width, reference.height, reference.name);

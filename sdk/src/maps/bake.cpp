@@ -82,7 +82,7 @@ int parameter_of(const ComposedProgram& program, const MapDescriptor& map, std::
 /// The map's extent, levels and layers, without its texels.
 MapData empty_map(const MapDescriptor& descriptor, const ComposedProgram& program, const MapData& height) {
   MapData map{descriptor.name, height.width, height.height, descriptor.channels, {}, height.address};
-  map.is_3d = descriptor.is_3d;
+  map.dimension = descriptor.dimension;
   map.depth = parameter_of(program, descriptor, descriptor.layers_parameter, descriptor.layers);
   if (descriptor.levels == MapLevels::single) return map;
   map.width = static_cast<int>(std::bit_ceil(static_cast<unsigned>(height.width)));

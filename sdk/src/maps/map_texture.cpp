@@ -95,7 +95,8 @@ Texture map_texture(const MapData& map) {
   texture.width = map.width;
   texture.height = map.height;
   texture.depth = map.depth;
-  texture.is_3d = map.is_3d;
+  texture.is_3d = map.dimension == MapDimension::volume;
+  texture.is_array = map.dimension == MapDimension::array;
   texture.sampler.address.fill(texel_address(map.address));
   texture.sampler.address[2] = TexelAddress::clamp;
   texture.levels = map.levels;

@@ -1,5 +1,5 @@
-// Pass 0: the greatest of the four corners of a cell, which bounds its bilinear patch. Pass k: a window of r^k cells is r × r
-// windows of r^(k-1) cells. Reads beyond the map are folded back into it, with the quadrant's direction where it runs backwards.
+// Pass 0: the greatest of the four corners of a cell, which bounds its bilinear patch. Later passes: a window is n × n of the
+// windows of the pass before. Reads beyond the map are folded back into it, with the quadrant's direction where it runs backwards.
 #include "shaders/lib/bake.glsl"
 #include "shaders/lib/fold.glsl"
 
@@ -23,11 +23,11 @@ void relievo_bake(ivec2 texel) {
     return;
   }
   ivec2 heading = relievo_heading(relievo_bake_layer());
-  int stride = 1;
-  for (int k = 1; k < pass; ++k) stride *= quadrant_maxima_ratio;
+  int count = pass == 1 ? quadrant_maxima_first : quadrant_maxima_ratio;
+  int stride = pass == 1 ? 1 : pass == 2 ? quadrant_maxima_first : quadrant_maxima_first * quadrant_maxima_ratio;
   float greatest = 0.0;
-  for (int j = 0; j < quadrant_maxima_ratio; ++j) {
-    for (int i = 0; i < quadrant_maxima_ratio; ++i) {
+  for (int j = 0; j < count; ++j) {
+    for (int i = 0; i < count; ++i) {
       ivec2 offset = stride * ivec2(i, j) * heading;
       greatest = max(greatest, quadrant_maxima_below(texel + offset, heading, pass - 1));
     }

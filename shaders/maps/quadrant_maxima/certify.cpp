@@ -2,6 +2,7 @@
 /// its corners. The windows' maxima are taken anew here, by sliding maxima along rows and then columns of the endless
 /// surface.
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <vector>
 
@@ -59,15 +60,18 @@ Status check(const HeightMap& height_map, const MapData& map, const CertifyOptio
   expected.channels = 4;
   expected.depth = 4;
   if (Status status = expect_shape(map, expected); !status) return status;
-  const auto ratio = options.values.find("quadrant_maxima.ratio");
-  const int factor = ratio == options.values.end() ? 4 : static_cast<int>(ratio->second);
+  auto parameter = [&](const char* name, int fallback) {
+    const auto found = options.values.find(name);
+    return found == options.values.end() ? fallback : static_cast<int>(found->second);
+  };
+  const int first = parameter("quadrant_maxima.first", 3), ratio = parameter("quadrant_maxima.ratio", 4);
+  const std::array<int, 4> widths = {1, first, first * ratio, first * ratio * ratio};
   const std::size_t texels = height_map.texels.size();
   for (int layer = 0; layer < 4; ++layer) {
-    for (int channel = 0, count = 1; channel < 4; ++channel, count *= factor) {
-      const std::vector<double> maxima = window_maxima(height_map, count, (layer & 1) != 0, (layer & 2) != 0);
+    for (std::size_t channel = 0; channel < 4; ++channel) {
+      const std::vector<double> maxima = window_maxima(height_map, widths[channel], (layer & 1) != 0, (layer & 2) != 0);
       for (std::size_t i = 0; i < texels; ++i) {
-        const std::size_t index =
-            (static_cast<std::size_t>(layer) * texels + i) * 4 + static_cast<std::size_t>(channel);
+        const std::size_t index = (static_cast<std::size_t>(layer) * texels + i) * 4 + channel;
         const int x = static_cast<int>(i) % map.width, y = static_cast<int>(i) / map.width;
         count_check(certificate, maxima[i] - static_cast<double>(map.texels[index]), options.tolerance, x, y, 0, layer);
       }

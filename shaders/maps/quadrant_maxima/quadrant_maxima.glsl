@@ -8,6 +8,6 @@ vec4 relievo_quadrant_maxima_at(FoldedCell folded) {
 
 // Their widths in cells.
 vec4 relievo_quadrant_maxima_widths() {
-  const float ratio = float(quadrant_maxima_ratio);
-  return vec4(1.0, ratio, ratio * ratio, ratio * ratio * ratio);
+  const float first = float(quadrant_maxima_first), ratio = float(quadrant_maxima_ratio);
+  return vec4(1.0, first, first * ratio, first * ratio * ratio);
 }

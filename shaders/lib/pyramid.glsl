@@ -7,8 +7,8 @@
 struct PyramidDescent {
   Interval interval;
   ivec2 extent;     // cells
-  float texel;      // t of one texel of way
   float offset;     // t beyond the border of a node that is crossed, their delta
+  float reach;      // t that linear filtering looks ahead and back, half a texel in the paper
   int level, top;
   float t;
 };
@@ -19,11 +19,13 @@ struct PyramidNode {
 };
 
 // Returns true when `hit` is decided already.
-bool relievo_descent_begin(Ray ray, int top, float crossing_offset, out PyramidDescent descent, out Hit hit) {
+bool relievo_descent_begin(Ray ray, int top, float crossing_texels, float filter_texels, out PyramidDescent descent,
+                           out Hit hit) {
   float clearance;
   descent.extent = textureSize(relievo_height_map, 0);
-  descent.texel = relievo_texel_time(ray, descent.extent);
-  descent.offset = crossing_offset * descent.texel;
+  float texel = relievo_texel_time(ray, descent.extent);
+  descent.offset = crossing_texels * texel;
+  descent.reach = filter_texels * texel;
   descent.level = top;
   descent.top = top;
   bool decided = relievo_begin(ray, descent.interval, clearance, hit);
@@ -47,11 +49,11 @@ PyramidNode relievo_descent_node(Ray ray, PyramidDescent descent) {
   return PyramidNode(node, relievo_tile_leave(tiled, low, high));
 }
 
-// §2.4: half a texel ahead of a leaf that may be hit, the interpolated height decides whether the cast goes on from there.
+// §2.4: half a texel ahead of where a leaf may be hit, the interpolated height decides whether the cast goes on from there.
 // If not, the surface is taken for a line between the points half a texel before and behind.
 bool relievo_descent_filter(Ray ray, inout PyramidDescent descent, out Hit hit) {
   Interval interval = descent.interval;
-  float ahead = min(descent.t + 0.5 * descent.texel, interval.exit);
+  float ahead = min(descent.t + descent.reach, interval.exit);
   float above = relievo_clearance(relievo_point(ray, ahead));
   if (ahead >= interval.exit && interval.end_status == RELIEVO_HIT) above = min(above, 0.0);
   hit = relievo_end_of(ray, interval);
@@ -60,7 +62,7 @@ bool relievo_descent_filter(Ray ray, inout PyramidDescent descent, out Hit hit) 
     descent.level = 0;
     return ahead >= interval.exit;
   }
-  float behind = max(descent.t - 0.5 * descent.texel, interval.enter);
+  float behind = max(descent.t - descent.reach, interval.enter);
   precise float a = abs(relievo_clearance(relievo_point(ray, behind)));
   precise float b = abs(above);
   precise float t = a + b > 0.0 ? behind + (ahead - behind) * (a / (a + b)) : descent.t;
@@ -68,10 +70,10 @@ bool relievo_descent_filter(Ray ray, inout PyramidDescent descent, out Hit hit) 
   return true;
 }
 
-// One step with the node's maximum `highest`. Returns true when `hit` is decided.
-bool relievo_descent_step(Ray ray, PyramidNode node, float highest, inout PyramidDescent descent, out Hit hit) {
+// One step with the node's maximum `highest`; level -1 is below the leaves: there linear filtering decides. Returns true when the
+// ray has come to its end.
+bool relievo_descent_step(Ray ray, PyramidNode node, float highest, inout PyramidDescent descent) {
   precise float height = ray.origin.z + descent.t * ray.direction.z;
-  hit = relievo_end_of(ray, descent.interval);
   if (height > highest) {
     precise float down = (highest - ray.origin.z) / ray.direction.z;  // where the ray falls to the maximum
     float reach = ray.direction.z < 0.0 ? max(down, descent.t) : RELIEVO_NEVER;
@@ -84,10 +86,5 @@ bool relievo_descent_step(Ray ray, PyramidNode node, float highest, inout Pyrami
     }
   }
   descent.level -= 1;
-  if (descent.level >= 0) return false;
-  return relievo_descent_filter(ray, descent, hit);
-}
-
-Hit relievo_descent_exhausted(Ray ray, PyramidDescent descent) {
-  return relievo_hit_at(ray, RELIEVO_EXHAUSTED, descent.t);
+  return false;
 }

@@ -24,9 +24,13 @@ TileRay relievo_tile_ray(Ray ray, float t, ivec2 extent) {
   return tiled;
 }
 
-// t where an axis leaves [low, high], in cell coordinates; where it does not change, where it leaves the tile.
+// t where an axis leaves [low, high], in cell coordinates; beyond the edge of a clamp map, where it comes back over it.
 float relievo_axis_leave(TileAxis axis, float low, float high) {
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLAMP
   if (axis.b == 0.0) return axis.leave;
+#else
+  if (axis.b == 0.0) return RELIEVO_NEVER;
+#endif
   precise float t = ((axis.b > 0.0 ? high : low) - axis.a) / axis.b;
   return t;
 }

@@ -35,7 +35,7 @@ bool secant_refine(Ray ray, Bracket bracket, int steps, out float t) {
     bool trusted = secant_meets(guesses, bracket, t) && !diverged;
     if (!trusted) {
       if (secant_fallback == 0) return false;
-      t = 0.5 * (bracket.above + bracket.below);
+      t = i < steps ? 0.5 * (bracket.above + bracket.below) : relievo_false_position(bracket);
     }
     if (i == steps || guesses.last_clearance == 0.0) return true;
     RELIEVO_COUNT_STEP();

@@ -16,6 +16,12 @@ std::vector<int> bits_of(const MapDescriptor& descriptor) {
   return descriptor.rounding.empty() ? std::vector<int>{32} : std::vector<int>{8, 16, 32};
 }
 
+/// Such a map takes as many bits as its heights need.
+bool has_exact_channel(const MapDescriptor& descriptor) {
+  return std::find(descriptor.rounding.begin(), descriptor.rounding.end(), Rounding::exact) !=
+         descriptor.rounding.end();
+}
+
 /// What a certifier must know: the parameters that the map was baked with.
 std::map<std::string, double> default_values(const MapDescriptor& descriptor) {
   std::map<std::string, double> values;
@@ -48,7 +54,8 @@ TEST_P(EveryCertifiedMap, KeepsItsPromiseOnVulkan) {
   ASSERT_TRUE(descriptor) << "a certifier without a map";
   for (const Case& test : cases_of(**descriptor)) {
     const MapData map = baked(GetParam(), test.map, test.values);
-    EXPECT_EQ(map.bits, test.bits) << test.title;
+    EXPECT_GE(map.bits, test.bits) << test.title;
+    EXPECT_TRUE(map.bits == test.bits || has_exact_channel(**descriptor)) << test.title << ": " << map.bits;
     const Certificate certificate = certified(test.map, map, test.values);
     EXPECT_GT(certificate.checked, 0U) << test.title;
     if (!certificate.guaranteed) continue;

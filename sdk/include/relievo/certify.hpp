@@ -21,7 +21,8 @@ struct CertifyOptions {
 /// How well one map keeps its promise.
 struct Certificate {
   std::string map;
-  std::string promise;  ///< what was checked, one sentence with its unit
+  std::string promise;     ///< what was checked, one sentence with its unit
+  bool guaranteed = true;  ///< false: the paper's map breaks it in places, and a violation is no fault of ours
   std::uint64_t checked = 0, violations = 0;
   double worst = 0;                        ///< by how much the promise is broken at the worst texel; 0 if nowhere
   int x = 0, y = 0, level = 0, layer = 0;  ///< the worst texel
@@ -29,7 +30,8 @@ struct Certificate {
 
 /// Checks `map` against the bilinear surface of `height_map`.
 /// Errors: "certify.unknown" for a map without a certifier, "certify.shape" when extent, levels, layers or channels are
-/// not those of the height map's map.
+/// not those of the height map's map, "certify.parameter" for a value out of its range, "certify.non-finite" for a map
+/// with NaN or Inf.
 Result<Certificate> certify(const HeightMap& height_map, const MapData& map, const CertifyOptions& options = {});
 
 /// Names of the maps that can be certified, sorted.
@@ -40,6 +42,7 @@ struct Certifier {
   const char* promise;
   /// Fills checked, violations, worst and where.
   Status (*check)(const HeightMap&, const MapData&, const CertifyOptions&, Certificate&);
+  bool guaranteed = true;
 };
 
 }  // namespace relievo

@@ -1,0 +1,22 @@
+// Pyramidal displacement mapping on the mip chain of max_pyramid.
+#include "shaders/lib/pyramid.glsl"
+
+Hit pyramid_trace(Ray ray) {
+  PyramidDescent descent;
+  Hit hit;
+  int top = relievo_max_pyramid_top();
+  if (relievo_descent_begin(ray, top, pyramid_crossing_offset, pyramid_filter_reach, descent, hit)) return hit;
+  // Two loops, so that on a GPU the neighbours wait for each other before they filter.
+  int steps = pyramid_max_steps;
+  while (steps > 0) {
+    while (steps > 0 && descent.level >= 0) {
+      --steps;
+      RELIEVO_COUNT_STEP();
+      PyramidNode node = relievo_descent_node(ray, descent);
+      float highest = relievo_max_pyramid_at(node.index, descent.level);
+      if (relievo_descent_step(ray, node, highest, descent)) return relievo_end_of(ray, descent.interval);
+    }
+    if (descent.level < 0 && relievo_descent_filter(ray, descent, hit)) return hit;
+  }
+  return relievo_hit_at(ray, RELIEVO_EXHAUSTED, descent.t);
+}

@@ -1,0 +1,91 @@
+/// Every map that has a certifier keeps its promise as baked on Vulkan, in all its bits, address modes and awkward
+/// sizes.
+#include "support/certify.hpp"
+
+namespace relievo::test {
+namespace {
+
+struct Case {
+  std::string title;
+  HeightMap map;
+  int bits = 32;
+  std::map<std::string, double> values;
+};
+
+std::vector<int> bits_of(const MapDescriptor& descriptor) {
+  return descriptor.rounding.empty() ? std::vector<int>{32} : std::vector<int>{8, 16, 32};
+}
+
+/// Such a map takes as many bits as its heights need.
+bool has_exact_channel(const MapDescriptor& descriptor) {
+  return std::find(descriptor.rounding.begin(), descriptor.rounding.end(), Rounding::exact) !=
+         descriptor.rounding.end();
+}
+
+/// What a certifier must know: the parameters that the map was baked with.
+std::map<std::string, double> default_values(const MapDescriptor& descriptor) {
+  std::map<std::string, double> values;
+  for (const Parameter& parameter : descriptor.parameters)
+    values[descriptor.name + "." + parameter.name] = parameter.value;
+  return values;
+}
+
+std::vector<Case> cases_of(const MapDescriptor& descriptor) {
+  std::vector<Case> cases;
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(1, 9), std::pair(7, 13), std::pair(64, 64)}) {
+    for (const AddressMode mode : all_address_modes) {
+      for (const int bits : bits_of(descriptor)) {
+        std::map<std::string, double> values = default_values(descriptor);
+        if (!descriptor.rounding.empty()) values[descriptor.name + ".bits"] = bits;
+        const HeightMap map = width == 64 ? smooth_noise_map(width, height) : white_noise_map(width, height);
+        cases.push_back({std::to_string(width) + "x" + std::to_string(height) + " " + std::string(to_string(mode)) +
+                             " " + std::to_string(bits) + " bits",
+                         with_address(map, mode), bits, values});
+      }
+    }
+  }
+  return cases;
+}
+
+class EveryCertifiedMap : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryCertifiedMap, KeepsItsPromiseOnVulkan) {
+  const Result<const MapDescriptor*> descriptor = registry().map(GetParam());
+  ASSERT_TRUE(descriptor) << "a certifier without a map";
+  for (const Case& test : cases_of(**descriptor)) {
+    const MapData map = baked(GetParam(), test.map, test.values);
+    EXPECT_GE(map.bits, test.bits) << test.title;
+    EXPECT_TRUE(map.bits == test.bits || has_exact_channel(**descriptor)) << test.title << ": " << map.bits;
+    const Certificate certificate = certified(test.map, map, test.values);
+    EXPECT_GT(certificate.checked, 0U) << test.title;
+    if (!certificate.guaranteed) continue;
+    EXPECT_EQ(certificate.violations, 0U) << test.title << ": by " << certificate.worst << " at " << certificate.x
+                                          << ", " << certificate.y << " of level " << certificate.level;
+  }
+}
+
+/// The seeded fault of the check above: white noise has no promise that survives a shift by five texels.
+TEST_P(EveryCertifiedMap, BreaksItsPromiseWhenItsTexelsAreMoved) {
+  const HeightMap height_map = white_noise_map(64, 64);
+  const Result<const MapDescriptor*> descriptor = registry().map(GetParam());
+  ASSERT_TRUE(descriptor) << "a certifier without a map";
+  const auto values = default_values(**descriptor);
+  MapData map = baked(GetParam(), height_map, values);
+  std::rotate(map.texels.begin(), map.texels.begin() + 5 * map.channels, map.texels.end());
+  EXPECT_GT(certified(height_map, map, values).violations, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Certify, EveryCertifiedMap, ::testing::ValuesIn(certified_maps()),
+                         [](const auto& map) { return map.param; });
+
+TEST(Certify, AllMapsThatPromiseABoundHaveACertifier) {
+  const std::vector<std::string> certified_names = certified_maps();
+  for (const auto& [name, map] : registry().maps) {
+    if (map.rounding.empty()) continue;
+    EXPECT_THAT(certified_names, ::testing::Contains(name));
+  }
+  EXPECT_THAT(certified_names, ::testing::Contains("normal"));
+}
+
+}  // namespace
+}  // namespace relievo::test

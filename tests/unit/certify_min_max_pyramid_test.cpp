@@ -1,0 +1,71 @@
+/// The minimum and maximum pyramid: its promise holds on the surface itself, and what breaks it is found.
+#include "support/certify.hpp"
+
+namespace relievo::test {
+namespace {
+
+constexpr const char* name = "min_max_pyramid";
+
+TEST(CertifyMinMaxPyramid, TheSurfaceLiesBetweenTheValuesOfEveryLevel) {
+  for (const AddressMode mode : all_address_modes) {
+    const HeightMap map = with_address(white_noise_map(7, 13), mode);
+    const MapData pyramid = baked(name, map);
+    Random random(3);
+    for (int i = 0; i < 5000; ++i) {
+      const SurfacePoint point = random_surface_point(map, random);
+      const int x = cell_read_at(point.x, map.width, mode), y = cell_read_at(point.y, map.height, mode);
+      for (int level = 0; level < pyramid.levels; ++level) {
+        ASSERT_LE(pyramid.texels[element(pyramid, x >> level, y >> level, 0, level)], point.height + 1e-12);
+        ASSERT_GE(pyramid.texels[element(pyramid, x >> level, y >> level, 1, level)], point.height - 1e-12);
+      }
+    }
+  }
+}
+
+TEST(CertifyMinMaxPyramid, TheTopIsTheLeastAndGreatestHeightAndNoLooser) {
+  const HeightMap map = white_noise_map(7, 13);
+  const MapData pyramid = baked(name, map);
+  const auto [least, greatest] = std::minmax_element(map.texels.begin(), map.texels.end());
+  EXPECT_EQ(pyramid.texels[element(pyramid, 0, 0, 0, pyramid.levels - 1)], *least);
+  EXPECT_EQ(pyramid.texels[element(pyramid, 0, 0, 1, pyramid.levels - 1)], *greatest);
+}
+
+TEST(CertifyMinMaxPyramid, ATexelThatBreaksThePromiseIsNamed) {
+  const HeightMap map = white_noise_map(7, 13);
+  const MapData good = baked(name, map);
+  const Certificate kept = certified(map, good);
+  EXPECT_EQ(kept.violations, 0U);
+  EXPECT_EQ(kept.checked, 7U * 13U * 5U) << "every cell in each of the levels of 8 x 16";
+  for (const int channel : {0, 1}) {
+    MapData faulty = good;
+    float& value = faulty.texels[element(faulty, 1, 2, channel, 1)];
+    value += channel == 0 ? 1e-6f : -1e-6f;
+    const Certificate broken = certified(map, faulty);
+    EXPECT_GE(broken.violations, 1U);
+    EXPECT_LE(broken.violations, 4U) << "no more cells have the extreme for a corner";
+    EXPECT_NEAR(broken.worst, 1e-6, 1e-7);
+    EXPECT_EQ(std::tuple(broken.x, broken.y, broken.level), std::tuple(1, 2, 1));
+  }
+}
+
+TEST(CertifyMinMaxPyramid, FaultsOfAWholeMapAreFound) {
+  const HeightMap map = white_noise_map(7, 13);
+  const MapData good = baked(name, map);
+  EXPECT_GT(certified(map, rounded_to_nearest(good)).violations, 50U);
+  EXPECT_GT(certified(white_noise_map(7, 13, 2), good).violations, 50U) << "another height map's";
+  EXPECT_GT(certified(map, baked(name, with_address(map, AddressMode::clamp))).violations, 5U) << "its borders";
+  MapData swapped = good;
+  for (std::size_t i = 0; i < swapped.texels.size(); i += 2) std::swap(swapped.texels[i], swapped.texels[i + 1]);
+  EXPECT_GT(certified(map, swapped).violations, 300U);
+}
+
+TEST(CertifyMinMaxPyramid, MapsOfAnotherShapeAndNumbersThatAreNoneAreRefused) {
+  const HeightMap map = white_noise_map(7, 13);
+  MapData faulty = baked(name, map);
+  EXPECT_EQ(certify(white_noise_map(7, 17), faulty).error().id, "certify.shape");
+  faulty.texels[element(faulty, 1, 1)] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(certify(map, faulty).error().id, "certify.non-finite");
+}
+
+}  // namespace
+}  // namespace relievo::test

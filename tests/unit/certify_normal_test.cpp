@@ -1,0 +1,57 @@
+/// Normals: unit length and central differences, and what differs is found.
+#include "support/certify.hpp"
+
+namespace relievo::test {
+namespace {
+
+constexpr const char* name = "normal";
+
+TEST(CertifyNormal, FlatAndSteepMapsKeepThePromise) {
+  for (const auto& [title, map] : small_maps()) {
+    for (const double scale : {1e-6, 0.1, 1e4}) {
+      const std::map<std::string, double> values = {{"normal.scale", scale}};
+      const Certificate certificate = certified(map, baked(name, map, values), values);
+      EXPECT_EQ(certificate.violations, 0U) << title << " at scale " << scale << ": " << certificate.worst;
+      EXPECT_EQ(certificate.checked, map.texels.size());
+    }
+  }
+}
+
+TEST(CertifyNormal, ARampHasTheNormalOfItsSlope) {
+  const HeightMap map = ramp_map(16, 8);
+  const MapData normals = baked(name, map);
+  const double slope = 0.1 * 16.0 / 15.0, size = std::sqrt(1 + slope * slope);
+  EXPECT_NEAR(normals.texels[element(normals, 5, 3, 0)], -slope / size, 1e-6);
+  EXPECT_EQ(normals.texels[element(normals, 5, 3, 1)], 0);
+  EXPECT_NEAR(normals.texels[element(normals, 5, 3, 2)], 1 / size, 1e-6);
+}
+
+TEST(CertifyNormal, ANormalThatDiffersIsNamed) {
+  const HeightMap map = white_noise_map(7, 13);
+  const MapData good = baked(name, map);
+  EXPECT_EQ(certified(map, good).violations, 0U);
+  MapData longer = good, turned = good;
+  for (int c = 0; c < 3; ++c) longer.texels[element(longer, 3, 4, c)] *= 1.00001f;
+  std::swap(turned.texels[element(turned, 3, 4, 0)], turned.texels[element(turned, 3, 4, 1)]);
+  for (const MapData& faulty : {longer, turned}) {
+    const Certificate broken = certified(map, faulty);
+    EXPECT_EQ(broken.violations, 1U);
+    EXPECT_EQ(std::pair(broken.x, broken.y), std::pair(3, 4));
+  }
+}
+
+TEST(CertifyNormal, FaultsOfAWholeMapAreFound) {
+  const HeightMap map = white_noise_map(7, 13);
+  const MapData good = baked(name, map);
+  EXPECT_EQ(certified(map, good, {{"normal.scale", 0.2}}).violations, 7U * 13U) << "twice as high as it was baked";
+  EXPECT_GT(certified(map, baked(name, with_address(map, AddressMode::clamp))).violations, 20U) << "its borders";
+  MapData inverted = good;
+  for (std::size_t i = 0; i < inverted.texels.size(); i += 3) inverted.texels[i] = -inverted.texels[i];
+  EXPECT_GT(certified(map, inverted).violations, 80U);
+  const auto refused = certify(map, good, certify_options({{"normal.scale", -1}}));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().id, "certify.parameter");
+}
+
+}  // namespace
+}  // namespace relievo::test

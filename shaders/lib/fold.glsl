@@ -14,24 +14,35 @@ vec2 relievo_fold_periods(vec2 x, vec2 period) {
   return periods;
 }
 
+// The same cell or texel in the first period, which is two maps long where every other one runs backwards.
+vec2 relievo_fold_to_first_period(vec2 cell, vec2 extent) {
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
+  precise vec2 first = cell - extent * relievo_fold_periods(cell, extent);
+#elif RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR
+  precise vec2 first = cell - 2.0 * extent * relievo_fold_periods(cell, 2.0 * extent);
+#else
+  vec2 first = cell;
+#endif
+  return first;
+}
+
 struct FoldedCell {
   vec2 cell;     // whole numbers in [0, extent)
   vec2 heading;  // each +1 or −1
 };
 
 FoldedCell relievo_fold_cell(vec2 cell, vec2 extent, vec2 heading) {
+  vec2 phase = relievo_fold_to_first_period(cell, extent);
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
-  precise vec2 folded = cell - extent * relievo_fold_periods(cell, extent);
-  return FoldedCell(folded, heading);
+  return FoldedCell(phase, heading);
 #elif RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR
-  precise vec2 phase = cell - 2.0 * extent * relievo_fold_periods(cell, 2.0 * extent);
   bvec2 backwards = greaterThanEqual(phase, extent);
   bvec2 flat_cell = equal(phase, 2.0 * extent - 1.0);
   vec2 turned = mix(heading, -heading, vec2(backwards));
   return FoldedCell(max(mix(phase, 2.0 * extent - 2.0 - phase, vec2(backwards)), vec2(0.0)),
                     mix(turned, vec2(1.0), vec2(flat_cell)));
 #else
-  return FoldedCell(clamp(cell, vec2(0.0), extent - 1.0), heading);
+  return FoldedCell(clamp(phase, vec2(0.0), extent - 1.0), heading);
 #endif
 }
 
@@ -41,16 +52,10 @@ ivec2 relievo_heading(int quadrant) { return ivec2((quadrant & 1) != 0 ? -1 : 1,
 
 // The same for texels. Whole numbers in floats, since integer division is slow where it is emulated: exact up to
 // 2^21 texels, and within the map for all.
-vec2 relievo_fold_whole(vec2 texel, vec2 extent) {
-#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
-  precise vec2 folded = texel - extent * relievo_fold_periods(texel, extent);
-#elif RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR
-  precise vec2 phase = texel - 2.0 * extent * relievo_fold_periods(texel, 2.0 * extent);
-  vec2 folded = min(phase, 2.0 * extent - 1.0 - phase);
-#else
-  vec2 folded = texel;
+ivec2 relievo_fold_texel(vec2 texel, vec2 extent) {
+  vec2 phase = relievo_fold_to_first_period(texel, extent);
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR
+  phase = min(phase, 2.0 * extent - 1.0 - phase);
 #endif
-  return clamp(folded, vec2(0.0), extent - 1.0);
+  return ivec2(clamp(phase, vec2(0.0), extent - 1.0));
 }
-
-ivec2 relievo_fold_texel(vec2 texel, vec2 extent) { return ivec2(relievo_fold_whole(texel, extent)); }

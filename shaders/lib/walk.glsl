@@ -125,6 +125,19 @@ vec2 relievo_walk_on(vec2 s, float distance) {
   return vec2(s.x + units, part - units);
 }
 
+// A walk that has come far starts anew where it is, with s = 0.
+bool relievo_walk_is_far(vec2 s) { return s.x >= 32768.0; }
+
+void relievo_walk_rebase(inout Walk walk, inout vec2 s) {
+  WalkPlace place = relievo_walk_place(walk, s);
+  walk.base_t = relievo_walk_t(walk, s);
+  walk.end -= s.x + s.y;
+  walk.base_cell = relievo_fold_to_first_period(place.cell, walk.extent);
+  walk.base_fraction = place.fraction;
+  walk.base_height = place.height;
+  s = vec2(0.0);
+}
+
 // How far it still is to the end of the interval.
 float relievo_walk_left(Walk walk, vec2 s) {
   precise float left = walk.end - (s.x + s.y);

@@ -46,28 +46,33 @@ Hit quadrant_maxima_trace(Ray ray) {
   bool starts_inside = false;
   while (steps > 0) {
     while (steps > 0) {
-      --steps;
-      RELIEVO_COUNT_STEP();
-      float border;
-      float free = quadrant_maxima_free(walk, pace, relievo_walk_place(walk, s), border);
-      if (free < border) break;
-      s = relievo_walk_on(s, free + RELIEVO_WALK_MARGIN);
-      if (relievo_walk_left(walk, s) <= 0.0) break;
+      while (steps > 0) {
+        --steps;
+        RELIEVO_COUNT_STEP();
+        float border;
+        float free = quadrant_maxima_free(walk, pace, relievo_walk_place(walk, s), border);
+        if (free < border) break;
+        s = relievo_walk_on(s, free + RELIEVO_WALK_MARGIN);
+        if (relievo_walk_left(walk, s) <= 0.0 || relievo_walk_is_far(s)) break;
+      }
+      if (s != vec2(0.0) && relievo_walk_left(walk, s) <= 0.0) break;
+      WalkPlace place = relievo_walk_place(walk, s);
+      vec4 corners = relievo_cell_corners_at(place.cell, walk.extent);
+      float border = relievo_walk_border(walk, place);
+      hit = relievo_walk_solve(walk, place, corners, min(border, max(relievo_walk_left(walk, s), 0.0)));
+      if (hit < RELIEVO_WALK_NEVER) {
+        bool is_below = relievo_cell_clearance(corners, vec3(place.fraction, place.height)) < 0.0;
+        starts_inside = is_below && relievo_walk_t(walk, s) == 0.0;
+        break;
+      }
+      s = relievo_walk_on(s, border + RELIEVO_WALK_MARGIN);
+      if (relievo_walk_left(walk, s) <= 0.0 || relievo_walk_is_far(s)) break;
     }
-    if (s != vec2(0.0) && relievo_walk_left(walk, s) <= 0.0) break;
-    WalkPlace place = relievo_walk_place(walk, s);
-    vec4 corners = relievo_cell_corners_at(place.cell, walk.extent);
-    float border = relievo_walk_border(walk, place);
-    hit = relievo_walk_solve(walk, place, corners, min(border, max(relievo_walk_left(walk, s), 0.0)));
-    if (hit < RELIEVO_WALK_NEVER) {
-      starts_inside = s == vec2(0.0) && relievo_cell_clearance(corners, vec3(place.fraction, place.height)) < 0.0;
-      break;
-    }
-    s = relievo_walk_on(s, border + RELIEVO_WALK_MARGIN);
-    if (relievo_walk_left(walk, s) <= 0.0) break;
+    if (hit < RELIEVO_WALK_NEVER || relievo_walk_left(walk, s) <= 0.0) break;
+    relievo_walk_rebase(walk, s);
   }
   if (hit < RELIEVO_WALK_NEVER) {
-    if (starts_inside && interval.enter == 0.0) return relievo_hit_at(ray, RELIEVO_INSIDE, 0.0);
+    if (starts_inside) return relievo_hit_at(ray, RELIEVO_INSIDE, 0.0);
     return relievo_walk_hit(ray, walk, relievo_walk_on(s, hit));
   }
   if (relievo_walk_left(walk, s) <= 0.0) return relievo_end_of(ray, interval);

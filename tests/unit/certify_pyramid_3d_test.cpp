@@ -9,7 +9,7 @@ constexpr const char* name = "pyramid_3d";
 TEST(CertifyPyramid3d, LayersHoldTheLevelsOfTheMaximumPyramid) {
   const HeightMap map = white_noise_map(7, 13);
   const MapData packed = baked(name, map), pyramid = baked("max_pyramid", map);
-  ASSERT_TRUE(packed.is_3d);
+  ASSERT_EQ(packed.dimension, MapDimension::volume);
   ASSERT_EQ(std::tuple(packed.width, packed.height, packed.depth), std::tuple(7, 13, 2));
   // Level 1 is 4 x 7; the others follow one another along v, beyond it.
   const int origins[][2] = {{0, 0}, {0, 0}, {4, 0}, {4, 4}, {4, 6}};
@@ -57,7 +57,7 @@ TEST(CertifyPyramid3d, FaultsOfAWholeMapAreFound) {
   std::rotate(swapped.texels.begin(), swapped.texels.begin() + 7 * 13, swapped.texels.end());
   EXPECT_GT(certified(map, swapped).violations, 50U) << "its layers in the other order";
   MapData flat = good;
-  flat.is_3d = false;
+  flat.dimension = MapDimension::flat;
   flat.depth = 1;
   EXPECT_EQ(certify(map, flat).error().id, "certify.shape");
 }

@@ -44,7 +44,8 @@ Hit quadrant_maxima_trace(Ray ray) {
   int steps = quadrant_maxima_max_steps;
   float hit = RELIEVO_WALK_NEVER;
   bool starts_inside = false;
-  while (steps > 0) {
+  bool ends = false;  // kept apart from s: a driver may end long loops by itself, and that is no miss
+  while (steps > 0 && !ends) {
     while (steps > 0) {
       while (steps > 0) {
         --steps;
@@ -53,9 +54,10 @@ Hit quadrant_maxima_trace(Ray ray) {
         float free = quadrant_maxima_free(walk, pace, relievo_walk_place(walk, s), border);
         if (free < border) break;
         s = relievo_walk_on(s, free + RELIEVO_WALK_MARGIN);
-        if (relievo_walk_left(walk, s) <= 0.0 || relievo_walk_is_far(s)) break;
+        ends = relievo_walk_left(walk, s) <= 0.0;
+        if (ends || relievo_walk_is_far(s)) break;
       }
-      if (s != vec2(0.0) && relievo_walk_left(walk, s) <= 0.0) break;
+      if (ends) break;
       WalkPlace place = relievo_walk_place(walk, s);
       vec4 corners = relievo_cell_corners_at(place.cell, walk.extent);
       float border = relievo_walk_border(walk, place);
@@ -66,15 +68,14 @@ Hit quadrant_maxima_trace(Ray ray) {
         break;
       }
       s = relievo_walk_on(s, border + RELIEVO_WALK_MARGIN);
-      if (relievo_walk_left(walk, s) <= 0.0 || relievo_walk_is_far(s)) break;
+      ends = relievo_walk_left(walk, s) <= 0.0;
+      if (ends || relievo_walk_is_far(s)) break;
     }
-    if (hit < RELIEVO_WALK_NEVER || relievo_walk_left(walk, s) <= 0.0) break;
+    if (hit < RELIEVO_WALK_NEVER) break;
     relievo_walk_rebase(walk, s);
   }
-  if (hit < RELIEVO_WALK_NEVER) {
-    if (starts_inside) return relievo_hit_at(ray, RELIEVO_INSIDE, 0.0);
-    return relievo_walk_hit(ray, walk, relievo_walk_on(s, hit));
-  }
-  if (relievo_walk_left(walk, s) <= 0.0) return relievo_end_of(ray, interval);
-  return relievo_hit_at(ray, RELIEVO_EXHAUSTED, relievo_walk_t(walk, s));
+  if (starts_inside) return relievo_hit_at(ray, RELIEVO_INSIDE, 0.0);
+  if (hit < RELIEVO_WALK_NEVER) return relievo_walk_hit(ray, walk, relievo_walk_on(s, hit));
+  if (ends) return relievo_end_of(ray, interval);
+  return relievo_walk_exhausted(ray, interval, walk, s);
 }

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iterator>
 #include <optional>
 #include <set>
 
@@ -85,24 +83,22 @@ Status check_modules(std::span<const ShaderModule> modules, const ComposedProgra
   return {};
 }
 
-/// Every shader for every target with a text; tasks are independent and each compiles a copy of its module.
+/// Every shader for every family of targets; tasks are independent and each compiles a copy of its module.
 Status emit_all(std::span<const Target> targets, std::span<const ShaderModule> modules, const BindingLayout& layout,
                 const CompileOptions& options, CompiledProgram& compiled) {
-  std::vector<Target> texts;
-  std::copy_if(targets.begin(), targets.end(), std::back_inserter(texts),
-               [](const Target& target) { return target.language != Language::spirv; });
+  const std::vector<TargetFamily> families = group_targets(targets);
   const std::vector<StageNeighbours> neighbours = find_neighbours(modules);
-  std::vector<std::optional<Result<std::string>>> results(modules.size() * texts.size());
+  std::vector<std::optional<Result<std::vector<std::string>>>> results(modules.size() * families.size());
   run_parallel(results.size(), options.threads, [&](std::size_t task) {
-    std::size_t module = task / texts.size();
-    results[task] = emit_target(texts[task % texts.size()], modules[module], layout, neighbours[module], compiled.key);
+    const std::size_t i = task / families.size();
+    results[task] = emit_family(families[task % families.size()], modules[i], layout, neighbours[i], compiled.key);
   });
   for (std::size_t i = 0; i < modules.size(); ++i) {
     CompiledShader shader{modules[i].stage, modules[i].spirv, {}};
-    for (std::size_t k = 0; k < texts.size(); ++k) {
-      Result<std::string>& text = *results[i * texts.size() + k];
-      if (!text) return tl::unexpected(text.error());
-      shader.text[to_string(texts[k])] = *std::move(text);
+    for (std::size_t f = 0; f < families.size(); ++f) {
+      Result<std::vector<std::string>>& texts = *results[i * families.size() + f];
+      if (!texts) return tl::unexpected(texts.error());
+      for (std::size_t k = 0; k < texts->size(); ++k) shader.text[to_string(families[f][k])] = std::move((*texts)[k]);
     }
     compiled.shaders.push_back(std::move(shader));
   }

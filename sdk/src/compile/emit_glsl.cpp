@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <set>
 #include <spirv_cross/spirv_glsl.hpp>
@@ -75,28 +76,67 @@ bool has_boolean_mix(const CompilerGLSL::Options& options) {
   return options.version >= (options.es ? 310u : 450u);
 }
 
-/// Whether the shader has an OpSelect on vectors.
-bool selects_vectors(const SpirvWords& words) {
+/// What a shader has that SPIRV-Cross writes differently in one version than in the next of the same profile, apart
+/// from what needs an extension in the older one.
+struct VersionDependence {
+  bool selects_vectors = false;  ///< OpSelect on vectors, see has_boolean_mix
+  bool has_hints = false;        ///< to unroll or to flatten; unknown to ESSL 300
+  bool has_blocks = false;       ///< that pass between stages; ESSL 300 takes them apart
+
+  bool any() const { return selects_vectors || has_hints || has_blocks; }
+};
+
+bool has_varying_blocks(const ShaderModule& module) {
+  const auto is_block = [&](const Resource& varying) {
+    return module.reflection->has_decoration(varying.base_type_id, spv::DecorationBlock);
+  };
+  const auto& resources = module.resources;
+  return std::any_of(resources.stage_inputs.begin(), resources.stage_inputs.end(), is_block) ||
+         std::any_of(resources.stage_outputs.begin(), resources.stage_outputs.end(), is_block);
+}
+
+VersionDependence find_version_dependence(const ShaderModule& module) {
+  VersionDependence found;
+  found.has_blocks = has_varying_blocks(module);
   std::set<std::uint32_t> vectors;
-  bool found = false;
-  for_each_instruction(words, [&](const SpirvInstruction& instruction) {
-    const std::uint32_t first = instruction.operands.empty() ? 0 : instruction.operands.front();
-    if (instruction.opcode == spv::OpTypeVector) vectors.insert(first);
-    if (instruction.opcode == spv::OpSelect) found = found || vectors.count(first) != 0;
+  for_each_instruction(module.spirv, [&](const SpirvInstruction& instruction) {
+    const auto& operands = instruction.operands;
+    switch (instruction.opcode) {
+      case spv::OpTypeVector:
+        vectors.insert(operands[0]);
+        break;
+      case spv::OpSelect:
+        found.selects_vectors = found.selects_vectors || vectors.count(operands[0]) != 0;
+        break;
+      case spv::OpSelectionMerge:
+        found.has_hints = found.has_hints || operands[1] != 0;
+        break;
+      case spv::OpLoopMerge:
+        found.has_hints = found.has_hints || operands[2] != 0;
+        break;
+      default:
+        break;
+    }
   });
   return found;
 }
 
 /// One shader for one version after another. SPIRV-Cross analyses a module, then emits it again and again until it
 /// knows every expression that needs a variable of its own. Neither depends on the version, and together they are most
-/// of the work, so later versions go on from there.
+/// of the work, so later versions go on from there; and where the functions read alike, only what is around them is
+/// emitted.
 class GlslTexts : public CompilerGLSL {
  public:
   using CompilerGLSL::CompilerGLSL;
 
-  std::string emit(const Options& wanted) {
+  /// `keep_functions`: they read as in the version before, if that one needed no extension.
+  std::string emit(const Options& wanted, bool keep_functions) {
+    keeps_functions_ = keep_functions && forced_extensions.empty();
     set_common_options(wanted);
-    return std::exchange(analysed_, true) ? emit_again() : compile();
+    std::string text = std::exchange(analysed_, true) ? emit_again() : compile();
+    if (keeps_functions_) return text + functions_;
+    functions_ = text.substr(functions_start_);
+    return text;
   }
 
  private:
@@ -119,7 +159,24 @@ class GlslTexts : public CompilerGLSL {
     return buffer.str();
   }
 
+  void emit_header() override {
+    CompilerGLSL::emit_header();
+    functions_start_ = 0;
+    if (!keeps_functions_) return;
+    // Functions that are "active" have been emitted.
+    ir.for_each_typed_id<spirv_cross::SPIRFunction>(
+        [](std::uint32_t, spirv_cross::SPIRFunction& function) { function.active = true; });
+  }
+
+  void emit_function_prototype(spirv_cross::SPIRFunction& function, const spirv_cross::Bitset& flags) override {
+    if (functions_start_ == 0) functions_start_ = buffer.str().size();
+    CompilerGLSL::emit_function_prototype(function, flags);
+  }
+
   bool analysed_ = false;
+  bool keeps_functions_ = false;
+  std::string functions_;  ///< of the version before
+  std::size_t functions_start_ = 0;
 };
 
 void prepare(CompilerGLSL& compiler, const ShaderModule& module, const BindingLayout& layout,
@@ -133,16 +190,17 @@ void prepare(CompilerGLSL& compiler, const ShaderModule& module, const BindingLa
 
 void emit_glsl(std::span<const Target> targets, const ShaderModule& module, const BindingLayout& layout,
                const StageNeighbours& neighbours, const TextSink& sink) {
-  const bool mixes = selects_vectors(module.spirv);
+  const VersionDependence depends = find_version_dependence(module);
   std::optional<GlslTexts> compiler;
-  bool was_mixing = false;
+  CompilerGLSL::Options before;
   for (const Target& target : targets) {
     const CompilerGLSL::Options options = options_for(target);
-    const bool is_mixing = mixes && has_boolean_mix(options);
-    // Which expressions need a variable depends on it.
-    if (!compiler || is_mixing != was_mixing) prepare(compiler.emplace(module.ir), module, layout, neighbours);
-    was_mixing = is_mixing;
-    std::string text = compiler->emit(options);
+    // Which expressions need a variable depends on how vectors are chosen.
+    const bool is_new = !compiler || (depends.selects_vectors && has_boolean_mix(options) != has_boolean_mix(before));
+    if (is_new) prepare(compiler.emplace(module.ir), module, layout, neighbours);
+    const bool reads_alike = options.es == before.es && has_precise(options) == has_precise(before);
+    std::string text = compiler->emit(options, !is_new && reads_alike && !depends.any());
+    before = options;
     check_names(*compiler, module);
     sink(std::move(text));
   }

@@ -122,6 +122,61 @@ void main() {
             "");
 }
 
+TEST(CompileSharedTexts, HintsGetWhatTheyGetAlone) {
+  EXPECT_EQ(compare_together_and_alone(testing::fragment_program(R"(
+#extension GL_EXT_control_flow_attributes : require
+layout(location = 1) in vec2 uv;
+layout(location = 0) out vec4 color;
+void main() {
+  vec4 sum = vec4(uv, uv);
+  [[dont_unroll]] for (int i = 0; i < 4; ++i) sum += sum.yzwx;
+  [[flatten]] if (sum.x > 1.0) sum.y = 0.0;
+  color = sum;
+}
+)")),
+            "");
+}
+
+TEST(CompileSharedTexts, VaryingBlocksGetWhatTheyGetAlone) {
+  ComposedShader vertex, fragment;
+  vertex.stage = ShaderStage::vertex;
+  vertex.text = R"(#version 450
+layout(location = 0) in vec4 position;
+layout(location = 0) out Passed { vec2 uv; vec3 way; } passed;
+void main() {
+  passed.uv = position.xy;
+  passed.way = position.yzw;
+  gl_Position = position;
+}
+)";
+  fragment.stage = ShaderStage::fragment;
+  fragment.text = R"(#version 450
+layout(location = 0) in Passed { vec2 uv; vec3 way; } passed;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(passed.uv, passed.way.xy); }
+)";
+  EXPECT_EQ(compare_together_and_alone(testing::make_program({vertex, fragment})), "");
+}
+
+TEST(CompileSharedTexts, ThreadsChangeNothing) {
+  CompileOptions options;
+  for (const ComposedProgram& program : {testing::surface_sample(), testing::prism_sample()}) {
+    const std::vector<Target> targets = allowed_targets(program);
+    const auto expected = compile(program, targets);
+    ASSERT_TRUE(expected) << expected.error().message;
+    for (int repeat = 0; repeat < 20; ++repeat) {
+      options.threads = 2 + static_cast<unsigned>(repeat % 3);
+      const auto compiled = compile(program, targets, options);
+      ASSERT_TRUE(compiled) << compiled.error().message;
+      EXPECT_EQ(compiled->reflection, expected->reflection);
+      for (std::size_t i = 0; i < expected->shaders.size(); ++i) {
+        EXPECT_EQ(compiled->shaders[i].spirv, expected->shaders[i].spirv);
+        EXPECT_EQ(compiled->shaders[i].text, expected->shaders[i].text);
+      }
+    }
+  }
+}
+
 TEST(CompileSharedTexts, TheComparisonCatchesAForeignText) {
   const auto program = testing::surface_sample();
   const Target target = *parse_target("hlsl-5.1");

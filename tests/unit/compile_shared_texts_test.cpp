@@ -137,12 +137,12 @@ void main() {
             "");
 }
 
-TEST(CompileSharedTexts, VaryingBlocksGetWhatTheyGetAlone) {
+/// A vertex shader that passes `passed` as declared, and a fragment shader that reads it.
+ComposedProgram passing_program(const std::string& type, const std::string& declaration) {
   ComposedShader vertex, fragment;
   vertex.stage = ShaderStage::vertex;
-  vertex.text = R"(#version 450
-layout(location = 0) in vec4 position;
-layout(location = 0) out Passed { vec2 uv; vec3 way; } passed;
+  vertex.text =
+      "#version 450\nlayout(location = 0) in vec4 position;\n" + type + "layout(location = 0) out " + declaration + R"(
 void main() {
   passed.uv = position.xy;
   passed.way = position.yzw;
@@ -150,12 +150,18 @@ void main() {
 }
 )";
   fragment.stage = ShaderStage::fragment;
-  fragment.text = R"(#version 450
-layout(location = 0) in Passed { vec2 uv; vec3 way; } passed;
-layout(location = 0) out vec4 color;
-void main() { color = vec4(passed.uv, passed.way.xy); }
-)";
-  EXPECT_EQ(compare_together_and_alone(testing::make_program({vertex, fragment})), "");
+  fragment.text = "#version 450\nlayout(location = 0) out vec4 color;\n" + type + "layout(location = 0) in " +
+                  declaration + "\nvoid main() { color = vec4(passed.uv, passed.way.xy); }\n";
+  return testing::make_program({vertex, fragment});
+}
+
+TEST(CompileSharedTexts, VaryingBlocksGetWhatTheyGetAlone) {
+  EXPECT_EQ(compare_together_and_alone(passing_program("", "Passed { vec2 uv; vec3 way; } passed;")), "");
+}
+
+TEST(CompileSharedTexts, VaryingStructsGetWhatTheyGetAlone) {
+  EXPECT_EQ(compare_together_and_alone(passing_program("struct Passed { vec2 uv; vec3 way; };\n", "Passed passed;")),
+            "");
 }
 
 TEST(CompileSharedTexts, ThreadsChangeNothing) {

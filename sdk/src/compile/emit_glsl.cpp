@@ -81,23 +81,23 @@ bool has_boolean_mix(const CompilerGLSL::Options& options) {
 struct VersionDependence {
   bool selects_vectors = false;  ///< OpSelect on vectors, see has_boolean_mix
   bool has_hints = false;        ///< to unroll or to flatten; unknown to ESSL 300
-  bool has_blocks = false;       ///< that pass between stages; ESSL 300 takes them apart
+  bool passes_structs = false;   ///< between stages, blocks too; ESSL 300 takes them apart
 
-  bool any() const { return selects_vectors || has_hints || has_blocks; }
+  bool any() const { return selects_vectors || has_hints || passes_structs; }
 };
 
-bool has_varying_blocks(const ShaderModule& module) {
-  const auto is_block = [&](const Resource& varying) {
-    return module.reflection->has_decoration(varying.base_type_id, spv::DecorationBlock);
+bool passes_structs(const ShaderModule& module) {
+  const auto is_struct = [&](const Resource& varying) {
+    return module.reflection->get_type(varying.base_type_id).basetype == spirv_cross::SPIRType::Struct;
   };
   const auto& resources = module.resources;
-  return std::any_of(resources.stage_inputs.begin(), resources.stage_inputs.end(), is_block) ||
-         std::any_of(resources.stage_outputs.begin(), resources.stage_outputs.end(), is_block);
+  return std::any_of(resources.stage_inputs.begin(), resources.stage_inputs.end(), is_struct) ||
+         std::any_of(resources.stage_outputs.begin(), resources.stage_outputs.end(), is_struct);
 }
 
 VersionDependence find_version_dependence(const ShaderModule& module) {
   VersionDependence found;
-  found.has_blocks = has_varying_blocks(module);
+  found.passes_structs = passes_structs(module);
   std::set<std::uint32_t> vectors;
   for_each_instruction(module.spirv, [&](const SpirvInstruction& instruction) {
     const auto& operands = instruction.operands;
@@ -195,8 +195,9 @@ void emit_glsl(std::span<const Target> targets, const ShaderModule& module, cons
   CompilerGLSL::Options before;
   for (const Target& target : targets) {
     const CompilerGLSL::Options options = options_for(target);
-    // Which expressions need a variable depends on how vectors are chosen.
-    const bool is_new = !compiler || (depends.selects_vectors && has_boolean_mix(options) != has_boolean_mix(before));
+    // Which expressions need a variable depends on how vectors are chosen; and a struct taken apart stays so.
+    const bool chooses_otherwise = depends.selects_vectors && has_boolean_mix(options) != has_boolean_mix(before);
+    const bool is_new = !compiler || chooses_otherwise || depends.passes_structs;
     if (is_new) prepare(compiler.emplace(module.ir), module, layout, neighbours);
     const bool reads_alike = options.es == before.es && has_precise(options) == has_precise(before);
     std::string text = compiler->emit(options, !is_new && reads_alike && !depends.any());

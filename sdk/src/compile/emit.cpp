@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
+#include <tuple>
 
 #include "compile/binding_collisions.hpp"
 #include "compile/emit_targets.hpp"

@@ -72,9 +72,8 @@ class ParsedShader {
   const char* name_pointer_;
 };
 
-SpirvWords generate_spirv(const glslang::TIntermediate& intermediate) {
-  glslang::TPoolAllocator pool;  // a thread that has parsed nothing has none
-  glslang::SetThreadPoolAllocator(&pool);
+SpirvWords generate_spirv(const glslang::TIntermediate& intermediate, glslang::TPoolAllocator& pool) {
+  glslang::SetThreadPoolAllocator(&pool);  // a thread that has parsed nothing has none
   glslang::SpvOptions options;
   options.generateDebugInfo = true;
   options.disableOptimizer = true;
@@ -105,6 +104,9 @@ Status parse_all(std::span<const std::unique_ptr<ParsedShader>> shaders, unsigne
 
 Result<std::vector<SpirvWords>> run_front_end(const ComposedProgram& program, unsigned threads) {
   initialize_once();
+  // Destroyed last: glslang keeps pointing at the thread's pool.
+  std::vector<glslang::TPoolAllocator> pools(program.shaders.size());
+  glslang::SetThreadPoolAllocator(&pools.front());
   std::vector<std::unique_ptr<ParsedShader>> shaders;
   glslang::TProgram linked;  // destroyed before the shaders it refers to
   for (const ComposedShader& source : program.shaders) {
@@ -117,7 +119,7 @@ Result<std::vector<SpirvWords>> run_front_end(const ComposedProgram& program, un
 
   std::vector<SpirvWords> modules(shaders.size());
   run_parallel(shaders.size(), threads, [&](std::size_t i) {
-    modules[i] = generate_spirv(*linked.getIntermediate(shaders[i]->shader().getStage()));
+    modules[i] = generate_spirv(*linked.getIntermediate(shaders[i]->shader().getStage()), pools[i]);
   });
   return modules;
 }

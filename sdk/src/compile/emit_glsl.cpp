@@ -144,7 +144,9 @@ class GlslTexts : public CompilerGLSL {
   std::string emit_again() {
     backend.allow_precision_qualifiers = options.es;
     backend.requires_relaxed_precision_analysis = options.es;
-    backend.support_precise_qualifier = has_precise(options);
+    if (std::exchange(backend.support_precise_qualifier, has_precise(options)) != has_precise(options)) {
+      forced_temporaries.clear();  // `precise` needs variables of its own, and spares others
+    }
     forced_extensions.clear();
     find_static_extensions();
     std::uint32_t passes = 0;

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
+#include <functional>
+#include <numeric>
 #include <optional>
 #include <set>
 
@@ -47,25 +48,27 @@ Status validate_pipeline(const SpirvWords& before, const SpirvWords& after, std:
   return shipped;
 }
 
-/// One shader from the front end's SPIR-V to what ships: linted, optimized, validated, parsed.
+/// One shader from the front end's SPIR-V to what ships: linted, optimized, parsed.
 Result<ShaderModule> finish_module(ShaderStage stage, const SpirvWords& front_end_words, const CompileOptions& options,
                                    std::string_view key) {
   if (auto ok = lint_implicit_lod_in_loop(front_end_words, key); !ok) return tl::unexpected(ok.error());
   SpirvWords plain = strip_lines(front_end_words);
-  Result<SpirvWords> words = options.optimize ? optimize_spirv(plain, key) : Result<SpirvWords>(plain);
+  Result<SpirvWords> words = options.optimize ? optimize_spirv(plain, key) : Result<SpirvWords>(std::move(plain));
   if (!words) return tl::unexpected(words.error());
-  if (options.validate) {
-    if (auto ok = validate_pipeline(plain, *words, key); !ok) return tl::unexpected(ok.error());
-  }
-  return parse_module(stage, *std::move(words), key);
+  const SpirvWords shipped = options.validate ? *words : SpirvWords();
+  Result<ShaderModule> module = parse_module(stage, *std::move(words), key);
+  if (module || !options.validate) return module;
+  // What cannot be read is explained best by what is wrong with it.
+  if (auto ok = validate_pipeline(front_end_words, shipped, key); !ok) return tl::unexpected(ok.error());
+  return module;
 }
 
-Result<std::vector<ShaderModule>> make_modules(const ComposedProgram& program, const CompileOptions& options) {
-  Result<std::vector<SpirvWords>> front_end = run_front_end(program);
-  if (!front_end) return tl::unexpected(front_end.error());
+Result<std::vector<ShaderModule>> make_modules(const ComposedProgram& program,
+                                               std::span<const SpirvWords> front_end_words,
+                                               const CompileOptions& options) {
   std::vector<std::optional<Result<ShaderModule>>> results(program.shaders.size());
   run_parallel(results.size(), options.threads, [&](std::size_t i) {
-    results[i] = finish_module(program.shaders[i].stage, (*front_end)[i], options, program.key);
+    results[i] = finish_module(program.shaders[i].stage, front_end_words[i], options, program.key);
   });
   std::vector<ShaderModule> modules;
   for (auto& result : results) {
@@ -85,47 +88,95 @@ Status check_modules(std::span<const ShaderModule> modules, const ComposedProgra
   return {};
 }
 
-/// Every shader for every target with a text; tasks are independent and each compiles a copy of its module.
-Status emit_all(std::span<const Target> targets, std::span<const ShaderModule> modules, const BindingLayout& layout,
-                const CompileOptions& options, CompiledProgram& compiled) {
-  std::vector<Target> texts;
-  std::copy_if(targets.begin(), targets.end(), std::back_inserter(texts),
-               [](const Target& target) { return target.language != Language::spirv; });
+/// What is made of the modules of a program; every part by a task of its own.
+struct Outputs {
+  explicit Outputs(std::size_t modules) : valid(modules), texts(modules) {}
+
+  std::vector<Status> valid;                                         ///< one a module
+  std::vector<std::vector<Result<std::vector<std::string>>>> texts;  ///< by module and family
+  Result<std::string> reflection;
+};
+
+/// The order in which the modules' tasks begin: long ones last would leave the other threads idle.
+std::vector<std::size_t> largest_first(std::span<const ShaderModule> modules) {
+  std::vector<std::size_t> order(modules.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return modules[a].spirv.size() > modules[b].spirv.size(); });
+  return order;
+}
+
+/// Emits beside validating: the optimizer has trusted the front end's words before.
+Outputs make_outputs(const ComposedProgram& program, std::span<const SpirvWords> front_end_words,
+                     std::span<const ShaderModule> modules, const BindingLayout& layout,
+                     std::span<const Target> targets, const CompileOptions& options) {
+  const std::vector<TargetFamily> families = group_targets(targets);
   const std::vector<StageNeighbours> neighbours = find_neighbours(modules);
-  std::vector<std::optional<Result<std::string>>> results(modules.size() * texts.size());
-  run_parallel(results.size(), options.threads, [&](std::size_t task) {
-    std::size_t module = task / texts.size();
-    results[task] = emit_target(texts[task % texts.size()], modules[module], layout, neighbours[module], compiled.key);
-  });
-  for (std::size_t i = 0; i < modules.size(); ++i) {
-    CompiledShader shader{modules[i].stage, modules[i].spirv, {}};
-    for (std::size_t k = 0; k < texts.size(); ++k) {
-      Result<std::string>& text = *results[i * texts.size() + k];
-      if (!text) return tl::unexpected(text.error());
-      shader.text[to_string(texts[k])] = *std::move(text);
+  Outputs outputs(modules.size());
+  std::vector<std::function<void()>> tasks;
+  for (const std::size_t i : largest_first(modules)) {
+    outputs.texts[i].resize(families.size());
+    for (std::size_t f = 0; f < families.size(); ++f) {
+      tasks.emplace_back([&, i, f] {
+        outputs.texts[i][f] = emit_family(families[f], modules[i], layout, neighbours[i], program.key);
+      });
     }
-    compiled.shaders.push_back(std::move(shader));
+    if (!options.validate) continue;
+    tasks.emplace_back(
+        [&, i] { outputs.valid[i] = validate_pipeline(front_end_words[i], modules[i].spirv, program.key); });
   }
+  tasks.emplace_back([&] { outputs.reflection = make_reflection(program, modules, layout, targets); });
+  run_parallel(tasks.size(), options.threads, [&](std::size_t task) { tasks[task](); });
+  return outputs;
+}
+
+/// The first thing that went wrong; an invalid module before what was made of it.
+Status check_outputs(const Outputs& outputs) {
+  for (const Status& valid : outputs.valid) {
+    if (!valid) return valid;
+  }
+  for (const auto& families : outputs.texts) {
+    for (const auto& texts : families) {
+      if (!texts) return tl::unexpected(texts.error());
+    }
+  }
+  if (!outputs.reflection) return tl::unexpected(outputs.reflection.error());
   return {};
+}
+
+CompiledProgram collect(const ComposedProgram& program, std::span<const Target> targets, const BindingLayout& layout,
+                        std::vector<ShaderModule> modules, Outputs outputs) {
+  const std::vector<TargetFamily> families = group_targets(targets);
+  CompiledProgram compiled;
+  compiled.key = program.key;
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    CompiledShader& shader = compiled.shaders.emplace_back();
+    shader.stage = modules[i].stage;
+    shader.spirv = std::move(modules[i].spirv);
+    for (std::size_t f = 0; f < families.size(); ++f) {
+      for (std::size_t k = 0; k < families[f].size(); ++k) {
+        shader.text[to_string(families[f][k])] = std::move((*outputs.texts[i][f])[k]);
+      }
+    }
+  }
+  for (const BoundResource& resource : layout.resources) compiled.bindings.push_back(resource.slot);
+  compiled.reflection = *std::move(outputs.reflection);
+  return compiled;
 }
 
 Result<CompiledProgram> run_pipeline(const ComposedProgram& program, std::span<const Target> targets,
                                      const CompileOptions& options, std::string_view fallback_stage) {
   if (auto ok = check_request(program, targets, fallback_stage); !ok) return tl::unexpected(ok.error());
-  Result<std::vector<ShaderModule>> modules = make_modules(program, options);
+  Result<std::vector<SpirvWords>> words = run_front_end(program, options.threads);
+  if (!words) return tl::unexpected(words.error());
+  Result<std::vector<ShaderModule>> modules = make_modules(program, *words, options);
   if (!modules) return tl::unexpected(modules.error());
   if (auto ok = check_modules(*modules, program, targets, fallback_stage); !ok) return tl::unexpected(ok.error());
   Result<BindingLayout> layout = make_binding_layout(*modules, program.key);
   if (!layout) return tl::unexpected(layout.error());
-
-  CompiledProgram compiled;
-  compiled.key = program.key;
-  if (auto ok = emit_all(targets, *modules, *layout, options, compiled); !ok) return tl::unexpected(ok.error());
-  for (const BoundResource& resource : layout->resources) compiled.bindings.push_back(resource.slot);
-  Result<std::string> reflection = make_reflection(program, *modules, *layout, targets);
-  if (!reflection) return tl::unexpected(reflection.error());
-  compiled.reflection = *std::move(reflection);
-  return compiled;
+  Outputs outputs = make_outputs(program, *words, *modules, *layout, targets, options);
+  if (auto ok = check_outputs(outputs); !ok) return tl::unexpected(ok.error());
+  return collect(program, targets, *layout, *std::move(modules), std::move(outputs));
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <spirv_cross/spirv_hlsl.hpp>
+#include <string_view>
 
 #include "compile/emit_targets.hpp"
 
@@ -75,9 +77,7 @@ CompilerHLSL::Options options_for(const Target& target) {
   return options;
 }
 
-}  // namespace
-
-std::string emit_hlsl(const Target& target, const ShaderModule& module, const BindingLayout& layout,
+std::string emit_text(const Target& target, const ShaderModule& module, const BindingLayout& layout,
                       const StageNeighbours& neighbours) {
   CompilerHLSL compiler(hide_unread_outputs(module, neighbours));
   compiler.set_hlsl_options(options_for(target));
@@ -88,6 +88,40 @@ std::string emit_hlsl(const Target& target, const ShaderModule& module, const Bi
   active.insert(bind_workgroup_count(compiler, stage, layout));
   compiler.set_enabled_interface_variables(std::move(active));
   return compiler.compile();
+}
+
+/// The first version that names the space of each register.
+constexpr int kNamesSpaces = 51;
+
+/// Makes the text of shader model 5.0 one of 5.1 or later: " : register(b0)" becomes " : register(b0, space0)".
+/// Declarations start at the margin; inside a function the same letters could be an expression.
+std::string name_spaces(std::string_view text) {
+  std::string named;
+  named.reserve(text.size() + text.size() / 16);
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, std::min(text.find('\n'), text.size() - 1) + 1);
+    const std::size_t start = line.starts_with(' ') ? std::string_view::npos : line.find(" : register(");
+    const std::size_t end = start == std::string_view::npos ? 0 : line.find(')', start);
+    named += line.substr(0, end);
+    if (end != 0) named += ", space0";
+    named += line.substr(end);
+    text.remove_prefix(line.size());
+  }
+  return named;
+}
+
+}  // namespace
+
+/// From 5.0 to 6.0, SPIRV-Cross asks for the shader model only to refuse what an old one lacks and to name spaces: the
+/// oldest is emitted, the others are made of its text.
+void emit_hlsl(std::span<const Target> targets, const ShaderModule& module, const BindingLayout& layout,
+               const StageNeighbours& neighbours, const TextSink& sink) {
+  const Target& oldest = targets.front();
+  std::string text = emit_text(oldest, module, layout, neighbours);
+  const bool is_named = oldest.version >= kNamesSpaces;
+  for (const Target& target : targets) {
+    sink(is_named || target.version < kNamesSpaces ? text : name_spaces(text));
+  }
 }
 
 }  // namespace relievo

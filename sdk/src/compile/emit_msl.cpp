@@ -44,13 +44,15 @@ CompilerMSL::Options options_for(const Target& target) {
 
 }  // namespace
 
-std::string emit_msl(const Target& target, const ShaderModule& module, const BindingLayout& layout,
-                     const StageNeighbours& neighbours) {
-  CompilerMSL compiler(hide_unread_outputs(module, neighbours));
-  compiler.set_msl_options(options_for(target));
-  bind_all(compiler, module.execution_model(), layout);
-  compiler.set_enabled_interface_variables(compiler.get_active_interface_variables());
-  return compiler.compile();
+void emit_msl(std::span<const Target> targets, const ShaderModule& module, const BindingLayout& layout,
+              const StageNeighbours& neighbours, const TextSink& sink) {
+  for (const Target& target : targets) {
+    CompilerMSL compiler(hide_unread_outputs(module, neighbours));
+    compiler.set_msl_options(options_for(target));
+    bind_all(compiler, module.execution_model(), layout);
+    compiler.set_enabled_interface_variables(compiler.get_active_interface_variables());
+    sink(compiler.compile());
+  }
 }
 
 }  // namespace relievo

@@ -1,6 +1,8 @@
-/// The emitters, one a language. They throw what SPIRV-Cross throws; `emit_target` catches.
+/// The emitters, one a family of languages. They throw what SPIRV-Cross throws; `emit_family` catches.
 #pragma once
 
+#include <functional>
+#include <span>
 #include <string>
 
 #include "compile/bindings.hpp"
@@ -9,11 +11,15 @@
 
 namespace relievo {
 
-std::string emit_glsl(const Target& target, const ShaderModule& module, const BindingLayout& layout,
-                      const StageNeighbours& neighbours);
-std::string emit_hlsl(const Target& target, const ShaderModule& module, const BindingLayout& layout,
-                      const StageNeighbours& neighbours);
-std::string emit_msl(const Target& target, const ShaderModule& module, const BindingLayout& layout,
-                     const StageNeighbours& neighbours);
+/// Takes the texts in the order of the targets, each before the next is begun.
+using TextSink = std::function<void(std::string text)>;
+
+/// GLSL and ESSL.
+void emit_glsl(std::span<const Target> targets, const ShaderModule& module, const BindingLayout& layout,
+               const StageNeighbours& neighbours, const TextSink& sink);
+void emit_hlsl(std::span<const Target> targets, const ShaderModule& module, const BindingLayout& layout,
+               const StageNeighbours& neighbours, const TextSink& sink);
+void emit_msl(std::span<const Target> targets, const ShaderModule& module, const BindingLayout& layout,
+              const StageNeighbours& neighbours, const TextSink& sink);
 
 }  // namespace relievo

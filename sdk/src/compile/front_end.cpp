@@ -1,15 +1,18 @@
 #include "compile/front_end.hpp"
 
 #include <fmt/format.h>
+#include <glslang/Include/PoolAlloc.h>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include "compile/complexity.hpp"
 #include "compile/diagnostics.hpp"
+#include "compile/parallel.hpp"
 
 namespace relievo {
 
@@ -69,7 +72,8 @@ class ParsedShader {
   const char* name_pointer_;
 };
 
-SpirvWords generate_spirv(const glslang::TIntermediate& intermediate) {
+SpirvWords generate_spirv(const glslang::TIntermediate& intermediate, glslang::TPoolAllocator& pool) {
+  glslang::SetThreadPoolAllocator(&pool);  // a thread that has parsed nothing has none
   glslang::SpvOptions options;
   options.generateDebugInfo = true;
   options.disableOptimizer = true;
@@ -86,26 +90,37 @@ tl::unexpected<Error> too_complex(const ComposedShader& source, std::string_view
                           to_string(source.stage), kMaxChainedOperators, key));
 }
 
+/// Parses every shader; the first error in their order is the one reported.
+Status parse_all(std::span<const std::unique_ptr<ParsedShader>> shaders, unsigned threads, std::string_view key) {
+  std::vector<char> parsed(shaders.size());
+  run_parallel(shaders.size(), threads, [&](std::size_t i) { parsed[i] = shaders[i]->parse(); });
+  for (std::size_t i = 0; i < shaders.size(); ++i) {
+    if (!parsed[i]) return tl::unexpected(glsl_error(shaders[i]->shader().getInfoLog(), key));
+  }
+  return {};
+}
+
 }  // namespace
 
-Result<std::vector<SpirvWords>> run_front_end(const ComposedProgram& program) {
+Result<std::vector<SpirvWords>> run_front_end(const ComposedProgram& program, unsigned threads) {
   initialize_once();
+  // Destroyed last: glslang keeps pointing at the thread's pool.
+  std::vector<glslang::TPoolAllocator> pools(program.shaders.size());
+  glslang::SetThreadPoolAllocator(&pools.front());
   std::vector<std::unique_ptr<ParsedShader>> shaders;
   glslang::TProgram linked;  // destroyed before the shaders it refers to
   for (const ComposedShader& source : program.shaders) {
     if (has_runaway_expression(source.text)) return too_complex(source, program.key);
     shaders.push_back(std::make_unique<ParsedShader>(source));
-    ParsedShader& parsed = *shaders.back();
-    if (!parsed.parse()) return tl::unexpected(glsl_error(parsed.shader().getInfoLog(), program.key));
-    linked.addShader(&parsed.shader());
+    linked.addShader(&shaders.back()->shader());
   }
+  if (auto ok = parse_all(shaders, threads, program.key); !ok) return tl::unexpected(ok.error());
   if (!linked.link(kMessages)) return tl::unexpected(glsl_error(linked.getInfoLog(), program.key));
 
-  std::vector<SpirvWords> modules;
-  for (const auto& parsed : shaders) {
-    const glslang::TIntermediate* intermediate = linked.getIntermediate(parsed->shader().getStage());
-    modules.push_back(generate_spirv(*intermediate));
-  }
+  std::vector<SpirvWords> modules(shaders.size());
+  run_parallel(shaders.size(), threads, [&](std::size_t i) {
+    modules[i] = generate_spirv(*linked.getIntermediate(shaders[i]->shader().getStage()), pools[i]);
+  });
   return modules;
 }
 

@@ -21,17 +21,16 @@ spvtools::MessageConsumer collect_into(std::string& messages) {
 
 /// Removes what a permutation does not use and what is decided at compile time. Functions stay functions: drivers
 /// inline by themselves, and the emitted text keeps the author's structure, at a third of the size and time. Nothing
-/// rewrites arithmetic: contracting a·b+c into fma would let targets disagree about a hit.
+/// rewrites arithmetic: contracting a·b+c into fma would let targets disagree about a hit. Blocks are not merged: a
+/// loop's step in a block of its own is what lets the emitters write `for (…; ++i)`.
 void register_passes(spvtools::Optimizer& optimizer) {
   optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
       .RegisterPass(spvtools::CreateDeadBranchElimPass())
       .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
       .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
-      .RegisterPass(spvtools::CreateAggressiveDCEPass())
       .RegisterPass(spvtools::CreateCCPPass())
       .RegisterPass(spvtools::CreateDeadBranchElimPass())
-      .RegisterPass(spvtools::CreateAggressiveDCEPass())
-      .RegisterPass(spvtools::CreateBlockMergePass());
+      .RegisterPass(spvtools::CreateAggressiveDCEPass());
 }
 
 tl::unexpected<Error> invalid(std::string_view key, std::string_view when, const std::string& messages) {

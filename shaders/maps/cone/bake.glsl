@@ -10,7 +10,7 @@ bool cone_narrows(float squared, float rise, float narrowest) {
 }
 
 void cone_meet_texel(ivec2 texel, ivec2 other, ivec2 extent, float own, inout float narrowest) {
-  float rise = relievo_height_texel(other, extent) - own;
+  float rise = texelFetch(relievo_height_map, other, 0).r - own;  // within the map: no need to wrap
   float squared = relievo_walk_squared(relievo_walk_gap(texel, other, other, extent));
   precise float ratio = squared / (rise * rise);
   if (cone_narrows(squared, rise, narrowest)) narrowest = ratio;

@@ -52,7 +52,7 @@ float cone_pruned(ivec2 texel, ivec2 extent, float own, float widest) {
 void relievo_bake(ivec2 texel) {
   ivec2 extent = textureSize(relievo_height_map, 0);
   float longest = float(max(extent.x, extent.y));
-  float own = relievo_height_texel(texel, extent);
+  float own = texelFetch(relievo_height_map, texel, 0).r;
   float widest = longest * longest;
   float narrowest = cone_exhaustive == 1 ? cone_exhaustive_search(texel, extent, own, widest)
                                          : cone_pruned(texel, extent, own, widest);

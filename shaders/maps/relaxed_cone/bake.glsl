@@ -27,13 +27,21 @@ float relaxed_cone_outward(ivec2 texel, ivec2 extent) {
   return relievo_height_texel(texel, extent);
 }
 
+// The least rise along one axis, over the way there, of the surface behind a texel that lies `way` texels off. The texel stands
+// for the half texel around it, so the way is half a texel longer or shorter, and where it is none leads to either side.
+float relaxed_cone_least_rise(int way, float forth, float back) {
+  float rise = way == 0 ? min(forth, back) : way > 0 ? forth : back;
+  return rise * (rise < 0.0 ? float(abs(way)) + 0.5 : max(float(abs(way)) - 0.5, 0.0));
+}
+
 // Whether a ray that passes above texel i on its way to j leaves the surface at j: the surface there falls, outward, faster than
 // the ray can. A horizontal ray is the first to leave; one from the lid falls by 1 - h_j at least on its way.
 bool relaxed_cone_leaves(ivec2 way, ivec2 other, ivec2 extent, float height) {
-  ivec2 outward = ivec2(way.x < 0 ? -1 : 1, way.y < 0 ? -1 : 1);
-  float along_u = relaxed_cone_outward(other + ivec2(outward.x, 0), extent) - height;
-  float along_v = relaxed_cone_outward(other + ivec2(0, outward.y), extent) - height;
-  precise float rise = float(abs(way.x)) * along_u + float(abs(way.y)) * along_v;  // over the length of `way`
+  float right = relaxed_cone_outward(other + ivec2(1, 0), extent) - height;
+  float left = relaxed_cone_outward(other - ivec2(1, 0), extent) - height;
+  float down = relaxed_cone_outward(other + ivec2(0, 1), extent) - height;
+  float up = relaxed_cone_outward(other - ivec2(0, 1), extent) - height;
+  precise float rise = relaxed_cone_least_rise(way.x, right, left) + relaxed_cone_least_rise(way.y, down, up);
   return rise < (relaxed_cone_from_lid == 1 ? height - 1.0 : 0.0);
 }
 

@@ -51,7 +51,7 @@ Status check(const HeightMap& height_map, const MapData& map, const CertifyOptio
     const double own = height_map.at(x, y);
     const double encoded =
         map.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(x)];
-    if (!(encoded > 0)) return count_check(part, encoded == 0 ? 0 : 1, options.tolerance, x, y);  // negative or NaN
+    if (!(encoded > 0)) return count_check(part, encoded == 0 ? 0 : 1, options.tolerance, x, y);
     const double slope = 1 / (encoded * encoded * longest);
     double excess = 0;
     search.for_each_cell(
@@ -67,6 +67,6 @@ Status check(const HeightMap& height_map, const MapData& map, const CertifyOptio
 }  // namespace
 
 extern const Certifier cone;
-const Certifier cone = {"no point of the surface is above the cone on a texel's centre (H)", check};
+const Certifier cone = {"no point of the surface is above the cone on a texel's centre (H)", check, false};
 
 }  // namespace relievo::certifiers

@@ -42,11 +42,6 @@ struct PatchDistance {
   }
 };
 
-double parameter(const CertifyOptions& options, const char* name, double fallback) {
-  const auto found = options.values.find(name);
-  return found == options.values.end() ? fallback : found->second;
-}
-
 /// By how much `stored` is longer than the distance from a point above texel (x, y).
 double excess_at(const SurfaceSearch& search, int x, int y, double height, double texel_size, double stored) {
   double shortest = stored;
@@ -62,14 +57,18 @@ double excess_at(const SurfaceSearch& search, int x, int y, double height, doubl
 }
 
 Status check(const HeightMap& height_map, const MapData& map, const CertifyOptions& options, Certificate& certificate) {
+  const Result<double> layers = baked_value(options, "distance_field", "layers");
+  if (!layers) return tl::unexpected(layers.error());
+  const Result<double> scale = baked_value(options, "distance_field", "scale");
+  if (!scale) return tl::unexpected(scale.error());
   MapData expected;
   expected.width = height_map.width;
   expected.height = height_map.height;
-  expected.depth = static_cast<int>(parameter(options, "distance_field.layers", 32));
+  expected.depth = static_cast<int>(*layers);
   if (Status status = expect_shape(map, expected); !status) return status;
   const SurfaceSearch search(height_map);
   const double longest = std::max(map.width, map.height);
-  const double texel_size = 1 / (longest * parameter(options, "distance_field.scale", 0.1));
+  const double texel_size = 1 / (longest * *scale);
   const std::size_t layer_size = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
   check_every_texel(height_map, options, certificate, [&](int x, int y, Certificate& part) {
     const std::size_t texel =
@@ -77,7 +76,7 @@ Status check(const HeightMap& height_map, const MapData& map, const CertifyOptio
     for (int layer = 0; layer < map.depth; ++layer) {
       const double stored = map.texels[texel + static_cast<std::size_t>(layer) * layer_size];
       const double height = (layer + 0.5) / map.depth;
-      const double excess = stored >= 0 ? excess_at(search, x, y, height, texel_size, stored) : 1;  // 1: or NaN
+      const double excess = stored >= 0 ? excess_at(search, x, y, height, texel_size, stored) : 1;
       count_check(part, excess, options.tolerance, x, y, 0, layer);
     }
   });

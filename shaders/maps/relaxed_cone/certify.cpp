@@ -51,19 +51,19 @@ Status check(const HeightMap& height_map, const MapData& map, const CertifyOptio
   if (Status status = expect_shape(map, expected); !status) return status;
   const SurfaceSearch search(height_map);
   const double longest = std::max(map.width, map.height);
-  const auto from_lid = options.values.find("relaxed_cone.from_lid");
-  const double fall = from_lid == options.values.end() ? 0 : from_lid->second;
+  const Result<double> fall = baked_value(options, "relaxed_cone", "from_lid");
+  if (!fall) return tl::unexpected(fall.error());
   check_every_texel(height_map, options, certificate, [&](int x, int y, Certificate& part) {
     const double own = height_map.at(x, y);
     const double encoded =
         map.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(x)];
-    if (!(encoded > 0)) return count_check(part, encoded == 0 ? 0 : 1, options.tolerance, x, y);  // negative or NaN
+    if (!(encoded > 0)) return count_check(part, encoded == 0 ? 0 : 1, options.tolerance, x, y);
     const double slope = 1 / (encoded * encoded * longest);
     double excess = 0;
     search.for_each_cell(
         x, y, [&](double highest, double distance) { return highest - own - slope * distance > excess; },
         [&](const oracle::Corners& corners, CellPlace place) {
-          excess = std::max(excess, FallingPart{corners, place, own, slope, fall}.excess());
+          excess = std::max(excess, FallingPart{corners, place, own, slope, *fall}.excess());
         });
     count_check(part, excess, options.tolerance, x, y);
   });
@@ -73,6 +73,7 @@ Status check(const HeightMap& height_map, const MapData& map, const CertifyOptio
 }  // namespace
 
 extern const Certifier relaxed_cone;
-const Certifier relaxed_cone = {"no ray leaves the surface within the relaxed cone on a texel's centre (H)", check};
+const Certifier relaxed_cone = {"no ray leaves the surface within the relaxed cone on a texel's centre (H)", check,
+                                false};
 
 }  // namespace relievo::certifiers

@@ -1,5 +1,5 @@
 // How far, in units of H, nothing is met around a point: less than or equal to the distance to the surface.
-#include "shaders/lib/ray.glsl"
+#include "shaders/lib/fold.glsl"
 
 // Units of H per texel.
 float relievo_distance_field_texel_size(ivec2 extent) {
@@ -22,7 +22,7 @@ float relievo_distance_field_at(vec3 point) {
 #if RELIEVO_FILTER_EXACT
   vec2 nearest = floor(position + 0.5);
   float above = max(ceil(layer), 0.0);
-  ivec3 texel = ivec3(relievo_wrap_texel(int(nearest.x), size.x), relievo_wrap_texel(int(nearest.y), size.y), int(above));
+  ivec3 texel = ivec3(relievo_fold_texel(nearest, vec2(size.xy)), int(above));
   float known = texelFetch(relievo_distance_field_map, texel, 0).r;
   precise vec3 away = vec3((position - nearest) * texel_size, (above - layer) / float(size.z));
   precise float squared = away.x * away.x + away.y * away.y + away.z * away.z;

@@ -6,10 +6,8 @@
 float max_pyramid_cell(ivec2 cell) {
   ivec2 extent = textureSize(relievo_height_map, 0);
   if (any(greaterThanEqual(cell, extent))) return 0.0;
-  ivec2 next = ivec2(relievo_wrap_texel(cell.x + 1, extent.x), relievo_wrap_texel(cell.y + 1, extent.y));
-  float low = max(texelFetch(relievo_height_map, cell, 0).r, texelFetch(relievo_height_map, ivec2(next.x, cell.y), 0).r);
-  float high = max(texelFetch(relievo_height_map, ivec2(cell.x, next.y), 0).r, texelFetch(relievo_height_map, next, 0).r);
-  return max(low, high);
+  vec4 corners = relievo_height_corners(vec2(cell), vec2(extent));
+  return max(max(corners.x, corners.y), max(corners.z, corners.w));
 }
 
 void relievo_bake(ivec2 texel) {

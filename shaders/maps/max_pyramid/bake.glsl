@@ -6,9 +6,8 @@
 float max_pyramid_cell(ivec2 cell) {
   ivec2 extent = textureSize(relievo_height_map, 0);
   if (any(greaterThanEqual(cell, extent))) return 0.0;
-  float low = max(relievo_height_texel(cell, extent), relievo_height_texel(cell + ivec2(1, 0), extent));
-  float high = max(relievo_height_texel(cell + ivec2(0, 1), extent), relievo_height_texel(cell + ivec2(1, 1), extent));
-  return max(low, high);
+  vec4 corners = relievo_height_corners(vec2(cell), vec2(extent));
+  return max(max(corners.x, corners.y), max(corners.z, corners.w));
 }
 
 void relievo_bake(ivec2 texel) {

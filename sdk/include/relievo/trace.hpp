@@ -51,7 +51,8 @@ Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registr
                                        int repeats = 1, std::vector<std::string>* messages = nullptr);
 
 /// An image of rays that look down at `angle` degrees above the base plane on a map whose lid is `scale` texture widths
-/// high, with a little perspective: `width`×`height` rays, row by row, each starting on the lid.
+/// high, with a little perspective: `width`×`height` rays, row by row, each starting on the lid. All numbers
+/// are floats, so that a shader and the oracle get the same rays.
 std::vector<Ray> make_view_rays(double angle_degrees, double scale, int width = 1024, int height = 1024);
 
 }  // namespace relievo

@@ -87,6 +87,7 @@ void add_list(CLI::App& app, Context& context);
 void add_describe(CLI::App& app, Context& context);
 void add_compile(CLI::App& app, Context& context);
 void add_bake(CLI::App& app, Context& context);
+void add_certify(CLI::App& app, Context& context);
 void add_trace(CLI::App& app, Context& context);
 void add_render(CLI::App& app, Context& context);
 void add_bench(CLI::App& app, Context& context);

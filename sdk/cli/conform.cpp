@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "evaluation/fuzz.hpp"
 #include "evaluation/hard_run.hpp"
 
 namespace relievo::cli {
@@ -15,6 +16,8 @@ struct ConformOptions {
   CLI::Option* hard_cases = nullptr;
   std::string hard_case_folder;
   int rays = 1000;
+  CLI::Option* fuzz = nullptr;
+  FuzzInput fuzz_input;
 };
 
 void print(const Evaluation& evaluation) {
@@ -69,13 +72,34 @@ Status conform_to_hard_cases(const Context& context, const Registry& registry, c
                           result->faults(), result->rows.size(), result->messages.size()));
 }
 
+Status fuzz(const Context& context, const Registry& registry, const ConformOptions& options) {
+  FuzzInput input = options.fuzz_input;
+  input.registry = &registry;
+  input.backends = options.backends;
+  Result<std::vector<std::string>> names = technique_names(registry, options.techniques);
+  if (!names) return tl::unexpected(names.error());
+  input.techniques = std::move(*names);
+  Result<FuzzResult> result = run_fuzz(input);
+  if (!result) return tl::unexpected(result.error());
+  if (context.json) {
+    fmt::print("{}\n", to_json(*result).dump(2));
+  } else {
+    print(*result);
+  }
+  if (result->faults == 0 && result->messages.empty()) return {};
+  return fail(
+      ErrorCode::mismatch, "conform.fuzz",
+      fmt::format("{} faults and {} validation messages; expected none", result->faults, result->messages.size()));
+}
+
 Status run_conform(const Context& context, const ConformOptions& options) {
   Result<Registry> registry = context.registry();
   if (!registry) return tl::unexpected(registry.error());
   if (options.hard_cases->count() > 0) return conform_to_hard_cases(context, *registry, options);
+  if (options.fuzz->count() > 0) return fuzz(context, *registry, options);
   if (options.scenes.empty() && options.heights.empty()) {
     return fail(ErrorCode::usage, "conform.nothing",
-                "nothing to conform on; expected --scene FILE, --height FILE or --hard-cases");
+                "nothing to conform on; expected --scene FILE, --height FILE, --hard-cases or --fuzz N");
   }
   Result<EvaluationInput> input =
       make_input(*registry, options.techniques, options.scenes, options.heights, options.address, options.set);
@@ -127,6 +151,21 @@ void add_conform(CLI::App& app, Context& context) {
   command->add_option("--rays", options->rays, "Rays a hard case and address mode")
       ->check(CLI::Range(1, 10000000))
       ->needs(options->hard_cases)
+      ->capture_default_str();
+  options->fuzz = command
+                      ->add_option("--fuzz", options->fuzz_input.calls,
+                                   "Only fuzzing: N rays in all, over random maps, rays and parameters")
+                      ->type_name("N")
+                      ->check(CLI::PositiveNumber)
+                      ->excludes(options->hard_cases);
+  command->add_option("--seed", options->fuzz_input.seed, "Of the fuzzing")
+      ->needs(options->fuzz)
+      ->capture_default_str();
+  command->add_option("--round", options->fuzz_input.round, "Only this round of the fuzzing, to see a finding again")
+      ->needs(options->fuzz);
+  command->add_option("--patience", options->fuzz_input.patience, "Seconds that one job of the fuzzing may take")
+      ->needs(options->fuzz)
+      ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_option("--address", options->address, "Of the height files")->capture_default_str();
   command->add_option("--backends", options->backends)->delimiter(',')->capture_default_str();

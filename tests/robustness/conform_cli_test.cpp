@@ -86,6 +86,7 @@ TEST_F(ConformCli, RunningOutOfStepsIsAFaultWhereTheCaseDoesNotAllowIt) {
 }
 
 TEST_F(ConformCli, BadCasesAreNamedByFileAndLine) {
+  write_technique(coarse_search);
   folder_.write("cases.toml", "schema = 1\n[[case]]\nnam = \"thin\"\n");
   const ChildResult result = conform({"--techniques", "exact"});
   EXPECT_EQ(result.exit_code, 1);

@@ -210,7 +210,9 @@ TEST(HardCases, EveryKindOfFaultIsCaughtWithItsRay) {
     change(plane.hits[k]);
     const HardRow row = plane.judge(claim, may_exhaust);
     EXPECT_EQ(row.fault.empty(), !row.example);
-    if (row.example) EXPECT_EQ(row.example->ray.u, plane.rays[k].u);
+    if (row.example) {
+      EXPECT_EQ(row.example->ray.u, plane.rays[k].u);
+    }
     return row.fault;
   };
   const auto miss = [](Hit& hit) { hit.status = HitStatus::miss; };

@@ -93,5 +93,40 @@ TEST_F(ConformCli, BadCasesAreNamedByFileAndLine) {
   EXPECT_NE(result.err.find("cases.toml:3:1"), std::string::npos) << result.err;
 }
 
+TEST_F(ConformCli, FuzzingCatchesAClaimThatDoesNotHold) {
+  write_technique(coarse_search);
+  const ChildResult result = run_relievo({"conform", "--fuzz", "8000", "--seed", "3", "--techniques", "mine,exact",
+                                          "-I", (folder_ / "techniques").string(), "--backends", "vulkan", "--json"});
+  EXPECT_EQ(result.exit_code, 4) << result.err;
+  const auto json = nlohmann::json::parse(result.out, nullptr, false);
+  ASSERT_TRUE(json.contains("rows")) << result.out;
+  for (const auto& row : json["rows"]) {
+    EXPECT_EQ(row["unsound"] > 0, row["technique"] == "mine") << row;
+    EXPECT_GE(row["calls"], 4000) << row;
+    EXPECT_GE(row["judged"], 500) << row;
+  }
+  ASSERT_FALSE(json["findings"].empty());
+  EXPECT_EQ(json["findings"][0]["technique"], "mine");
+}
+
+TEST_F(ConformCli, FuzzingReportsAJobThatTakesTooLongAndEndsWhenItDoesNotComeBack) {
+  // Mesa's software drivers leave any loop after 65535 rounds: what ends for nobody else takes them a second.
+  write_technique(
+      "  float t = 1.0;\n  while (t > 0.0) t = relievo_height_at(ray.origin.xy + vec2(t)) + 1.0;\n"
+      "  return relievo_hit_at(ray, RELIEVO_HIT, t);\n");
+  const auto fuzz = [&](const char* patience) {
+    return run_relievo({"conform", "--fuzz", "2000", "--techniques", "mine", "-I", (folder_ / "techniques").string(),
+                        "--backends", "vulkan", "--patience", patience});
+  };
+  const ChildResult slow = fuzz("0.3");
+  EXPECT_EQ(slow.exit_code, 4);
+  const bool is_told = slow.out.find("s for 250 rays") != std::string::npos;
+  EXPECT_TRUE(is_told || slow.err.find("does not come back") != std::string::npos) << slow.out << slow.err;
+  const ChildResult hanging = fuzz("0.002");
+  EXPECT_EQ(hanging.exit_code, 4) << hanging.out;
+  EXPECT_NE(hanging.err.find("mine on vulkan in round 0 of seed 1 does not come back"), std::string::npos)
+      << hanging.err;
+}
+
 }  // namespace
 }  // namespace relievo::test

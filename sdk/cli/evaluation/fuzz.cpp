@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <chrono>
-#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -16,18 +15,8 @@ namespace {
 constexpr std::size_t largest_job = 16384;  // rays
 constexpr std::size_t smallest_job = 64;    // as many as a work group has
 constexpr double steps_a_job = 2e7;         // a second or so on a software driver
+constexpr std::uint64_t least_rounds = 8;   // however few calls there are
 constexpr std::size_t findings_kept = 20;
-
-bool is_finite(const Hit& hit) {
-  return std::isfinite(hit.t) && std::isfinite(hit.u) && std::isfinite(hit.v) && std::isfinite(hit.h);
-}
-
-std::string describe(const Ray& r, const Hit& h) {
-  return fmt::format(
-      "ray {:.17g},{:.17g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}: status {} at t {:.9g}, ({:.9g}, {:.9g}, "
-      "{:.9g})",
-      r.u, r.v, r.h, r.du, r.dv, r.dh, r.t_max, static_cast<int>(h.status), h.t, h.u, h.v, h.h);
-}
 
 /// Ends the program, saying where it was, when a job does not come back: an API call cannot be cancelled.
 class Watchdog {
@@ -90,11 +79,12 @@ class Run {
       for (const auto& [name, backend] : backends) result_.rows.push_back({technique, name});
     }
     quota_ = std::max<std::uint64_t>(1, (input.calls + result_.rows.size() - 1) / result_.rows.size());
+    rays_a_job_ = static_cast<std::size_t>(std::clamp<std::uint64_t>(quota_ / least_rounds, smallest_job, largest_job));
   }
 
   void rounds() {
     const std::uint64_t first = input_.round < 0 ? 0 : static_cast<std::uint64_t>(input_.round);
-    Progress progress("fuzz", static_cast<std::size_t>(quota_ / largest_job + 1));
+    Progress progress("fuzz", static_cast<std::size_t>(quota_ / rays_a_job_ + 1));
     bool more = true;
     for (std::uint64_t k = first; more; ++k) {
       progress.advance(fmt::format("round {}", k));
@@ -105,8 +95,7 @@ class Run {
  private:
   /// Returns whether any technique has calls left.
   bool round(std::uint64_t k) {
-    const FuzzRound whole =
-        draw_round(input_.seed, k, static_cast<std::size_t>(std::min<std::uint64_t>(quota_, largest_job)));
+    const FuzzRound whole = draw_round(input_.seed, k, rays_a_job_);
     const std::vector<Hit> truth = truth_of(whole);
     bool more = false;
     for (FuzzRow& row : result_.rows) {
@@ -185,35 +174,11 @@ class Run {
   OpenBackends& backends_;
   FuzzResult& result_;
   std::uint64_t quota_ = 0;
+  std::size_t rays_a_job_ = 0;
   Watchdog watchdog_;
 };
 
 }  // namespace
-
-void judge_fuzz(const FuzzRound& round, std::span<const Hit> hits, std::span<const Hit> truth, FuzzRow& row,
-                std::vector<std::string>& findings) {
-  const std::uint64_t before[] = {row.non_finite, row.bad_status};
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    const Hit& hit = hits[i];
-    row.hits += hit.status == HitStatus::hit || hit.status == HitStatus::inside;
-    row.exhausted += hit.status == HitStatus::exhausted;
-    if (!is_finite(hit) && ++row.non_finite == before[0] + 1)
-      findings.push_back("NaN or Inf: " + describe(round.rays[i], hit));
-    const int status = static_cast<int>(hit.status);
-    if ((status < 0 || status > static_cast<int>(HitStatus::outside)) && ++row.bad_status == before[1] + 1)
-      findings.push_back("no such status: " + describe(round.rays[i], hit));
-  }
-  if (truth.empty()) return;
-  const HardRow judged = judge_hard_rays(round.map, std::span(round.rays).first(truth.size()), truth,
-                                         hits.first(truth.size()), FirstHit::always, true);
-  row.judged += judged.error.judged;
-  row.unsound += judged.wrong() + judged.error.missed + judged.error.false_hit;
-  if (judged.fault.empty() || !judged.example) return;
-  const HardExample& e = *judged.example;
-  findings.push_back(fmt::format("{} of {} rays, first {}; the oracle says {} at t {:.9g}; {}x{} map, {}", judged.fault,
-                                 judged.error.judged, describe(e.ray, e.found), to_string(e.truth.status), e.truth.t,
-                                 round.map.width, round.map.height, to_string(round.map.address)));
-}
 
 Result<FuzzResult> run_fuzz(const FuzzInput& input) {
   const auto start = std::chrono::steady_clock::now();
@@ -224,60 +189,6 @@ Result<FuzzResult> run_fuzz(const FuzzInput& input) {
   Run(input, *backends, result).rounds();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
-}
-
-void print(const FuzzResult& result) {
-  for (const NotRun& n : result.not_run) fmt::print("not run: {}, because {}\n", n.what, n.reason);
-  fmt::print("{:<22} {:<8} {:>10} {:>10} {:>10} {:>5} {:>9} {:>8} {:>6} {:>9}\n", "technique", "backend", "calls",
-             "hits", "exhausted", "NaN", "judged", "unsound", "failed", "slowest s");
-  std::uint64_t calls = 0;
-  for (const FuzzRow& r : result.rows) {
-    calls += r.calls;
-    fmt::print("{:<22} {:<8} {:>10} {:>10} {:>10} {:>5} {:>9} {:>8} {:>6} {:>9.2f}\n", r.technique, r.backend, r.calls,
-               r.hits, r.exhausted, r.non_finite + r.bad_status, r.judged, r.unsound, r.failed_jobs, r.slowest);
-  }
-  for (const FuzzFinding& f : result.findings)
-    fmt::print("FAIL {} on {}, round {}: {}\n", f.technique, f.backend, f.round, f.what);
-  fmt::print("{} messages of validation and debug output{}\n", result.messages.size(),
-             result.messages.empty() ? "" : ", first: " + result.messages.front());
-  const double rate = result.seconds > 0 ? static_cast<double>(calls) / result.seconds : 0;
-  fmt::print("{} calls in {:.1f} s, {:.0f} a second: 1e8 calls take {:.1f} h\n", calls, result.seconds, rate,
-             rate > 0 ? 1e8 / rate / 3600 : 0);
-}
-
-nlohmann::json to_json(const FuzzResult& result) {
-  nlohmann::json json = {{"schema", 1},
-                         {"seconds", result.seconds},
-                         {"faults", result.faults},
-                         {"messages", result.messages},
-                         {"rows", nlohmann::json::array()},
-                         {"findings", nlohmann::json::array()},
-                         {"not_run", nlohmann::json::array()}};
-  std::uint64_t calls = 0;
-  for (const FuzzRow& r : result.rows) {
-    calls += r.calls;
-    json["rows"].push_back({{"technique", r.technique},
-                            {"backend", r.backend},
-                            {"calls", r.calls},
-                            {"hits", r.hits},
-                            {"exhausted", r.exhausted},
-                            {"non_finite", r.non_finite},
-                            {"bad_status", r.bad_status},
-                            {"judged", r.judged},
-                            {"unsound", r.unsound},
-                            {"jobs", r.jobs},
-                            {"failed_jobs", r.failed_jobs},
-                            {"slow_jobs", r.slow_jobs},
-                            {"seconds", r.seconds},
-                            {"slowest_s", r.slowest}});
-  }
-  json["calls"] = calls;
-  json["calls_per_s"] = result.seconds > 0 ? static_cast<double>(calls) / result.seconds : 0.0;
-  for (const FuzzFinding& f : result.findings)
-    json["findings"].push_back(
-        {{"technique", f.technique}, {"backend", f.backend}, {"round", f.round}, {"what", f.what}});
-  for (const NotRun& n : result.not_run) json["not_run"].push_back({{"what", n.what}, {"reason", n.reason}});
-  return json;
 }
 
 }  // namespace relievo::cli

@@ -41,9 +41,10 @@ void judge_fuzz(const FuzzRound& round, std::span<const Hit> hits, std::span<con
   row.unsound += judged.wrong() + judged.error.missed + judged.error.false_hit;
   if (judged.fault.empty() || !judged.example) return;
   const HardExample& e = *judged.example;
-  findings.push_back(fmt::format("{} of {} rays, first {}; the oracle says {} at t {:.9g}; {}x{} map, {}", judged.fault,
-                                 judged.error.judged, describe(e.ray, e.found), to_string(e.truth.status), e.truth.t,
-                                 round.map.width, round.map.height, to_string(round.map.address)));
+  findings.push_back(
+      fmt::format("{} of {} rays, first {}; the oracle says {} at t {:.9g}, ({:.9g}, {:.9g}, {:.9g}); {}x{} map, {}",
+                  judged.fault, judged.error.judged, describe(e.ray, e.found), to_string(e.truth.status), e.truth.t,
+                  e.truth.u, e.truth.v, e.truth.h, round.map.width, round.map.height, to_string(round.map.address)));
 }
 
 }  // namespace relievo::cli

@@ -15,24 +15,27 @@ struct BakeOptions {
   std::vector<std::string> set;
 };
 
-/// PNG shows signed channels, as normal maps do: [-1,1] becomes [0,1].
-Image to_image(const MapData& map, bool for_png) {
+/// Level 0 or the first layer as a picture; signed channels become [0,1], as normal maps are shown.
+Status write_picture(const MapData& map, const std::string& path) {
   Image image{map.width, map.height, map.channels, map.texels};
-  image.pixels.resize(map_level(map, 1).offset * static_cast<std::size_t>(map.channels));  // level 0
-  bool is_signed = std::any_of(map.texels.begin(), map.texels.end(), [](float t) { return t < 0; });
-  if (for_png && is_signed) {
+  image.pixels.resize(map_level(map, 1).offset * static_cast<std::size_t>(map.channels));
+  if (std::any_of(map.texels.begin(), map.texels.end(), [](float t) { return t < 0; })) {
     for (float& value : image.pixels) value = 0.5f + 0.5f * value;
   }
-  return image;
+  return write_png(path, image);
 }
 
-Status write_map(const MapData& map, const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  if (extension == ".png") return write_png(path, to_image(map, true));
-  if (extension == ".pfm") return write_pfm(path, to_image(map, false));
-  if (extension == ".exr") return write_exr(path, to_image(map, false));
-  return fail(ErrorCode::usage, "bake.format",
-              fmt::format("'{}' has the extension '{}'; expected .exr, .pfm or .png", path, extension), path);
+/// What the map was baked with: its own parameters in full, so that a later default does not change the file's meaning.
+std::map<std::string, double> values_of(const MapDescriptor& map, const std::map<std::string, double>& given) {
+  std::map<std::string, double> values = given;
+  for (const Parameter& p : map.parameters) values.try_emplace(map.name + "." + p.name, p.value);
+  return values;
+}
+
+nlohmann::json json_of(const MapData& map, double seconds, const std::string& output, bool is_picture) {
+  return {{"map", map.name},      {"width", map.width},       {"height", map.height},   {"layers", map.depth},
+          {"levels", map.levels}, {"channels", map.channels}, {"bits", map.bits},       {"bytes", texture_bytes(map)},
+          {"seconds", seconds},   {"output", output},         {"lossless", !is_picture}};
 }
 
 Status run_bake(const Context& context, const BakeOptions& options) {
@@ -55,20 +58,16 @@ Status run_bake(const Context& context, const BakeOptions& options) {
   if (Status status = bake_map(**backend, *registry, options.map, maps, settings->values); !status) return status;
   double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const MapData& map = maps.at(options.map);
-  if (Status status = write_map(map, options.output); !status) return status;
-  std::size_t bytes = map.texels.size() * sizeof(float);
+  const bool is_picture = map.bits == 32 && std::filesystem::path(options.output).extension() == ".png";
+  Status written = is_picture ? write_picture(map, options.output)
+                              : write_map(options.output, map, values_of(**descriptor, settings->values));
+  if (!written) return written;
   if (context.json) {
-    fmt::print("{}\n", nlohmann::json{{"map", map.name},
-                                      {"width", map.width},
-                                      {"height", map.height},
-                                      {"channels", map.channels},
-                                      {"bytes", bytes},
-                                      {"seconds", seconds},
-                                      {"output", options.output}}
-                           .dump(2));
+    fmt::print("{}\n", json_of(map, seconds, options.output, is_picture).dump(2));
   } else {
-    fmt::print("{}: {}x{}x{}, {} bytes, {:.3f} s -> {}\n", map.name, map.width, map.height, map.channels, bytes,
-               seconds, options.output);
+    fmt::print("{}: {}x{}x{}, {} levels, {} channels, {} bytes, {:.3f} s -> {}{}\n", map.name, map.width, map.height,
+               map.depth, map.levels, map.channels, texture_bytes(map), seconds, options.output,
+               is_picture ? " (a picture: 8 bits, one level)" : "");
   }
   return {};
 }
@@ -81,7 +80,10 @@ void add_bake(CLI::App& app, Context& context) {
                                   [&context, options] { return run_bake(context, *options); });
   command->add_option("map", options->map, "Map to bake")->required();
   command->add_option("--height", options->height, "Height file")->required();
-  command->add_option("-o,--output", options->output, ".exr or .pfm (lossless), .png")->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   ".exr or .pfm (all levels and layers, lossless); .png (the same for 8 and 16 bits, else a picture)")
+      ->required();
   command->add_option("--address", options->address, "repeat, mirror, clamp or clip")->capture_default_str();
   command->add_option("--backend", options->backend)->capture_default_str();
   command->add_option("--set", options->set, "map.parameter=value");

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "common.hpp"
+#include "evaluation/embree_rival.hpp"
 #include "rays_csv.hpp"
 #include "relievo/trace.hpp"
 
@@ -16,6 +17,8 @@ struct BenchOptions {
   std::string height, address = "repeat", rays, backend = "vulkan", filter = "exact";
   double scale = 0.1, angle = 20;
   int repeat = 5;
+  bool embree = false;
+  unsigned embree_threads = 2;
 };
 
 Result<std::vector<TraceRequest>> requests_of(const Registry& registry, const BenchOptions& options) {
@@ -48,15 +51,51 @@ nlohmann::json row_of(const TraceRequest& request, const TraceResult& timed, con
   return row;
 }
 
+/// Bytes of all maps that a technique reads, the height map included, as textures.
+std::size_t map_bytes(const Registry& registry, const std::string& technique, const MapSet& maps) {
+  std::size_t bytes = 0;
+  for (const std::string& map : registry.techniques.at(technique).maps) bytes += texture_bytes(maps.find(map)->second);
+  return bytes;
+}
+
+/// The row of Embree's fastest method, with the times of the others.
+Result<nlohmann::json> race(const BenchOptions& options, const HeightMap& height, std::span<const Ray> rays,
+                            std::span<const Hit> truth, double reference) {
+  Result<RivalResult> rival = race_embree(height, options.scale, rays, options.embree_threads, options.repeat);
+  if (!rival) return tl::unexpected(rival.error());
+  const RivalRun& best = rival->runs[rival->fastest];
+  const ErrorFigures figures = compare_hits(truth, best.hits, height.width, height.height);
+  nlohmann::json row = to_json(figures);
+  const double seconds = median(best.seconds);
+  row.update({{"technique", "embree"},
+              {"filter", "triangles"},
+              {"median_s", seconds},
+              {"rays_per_s", seconds > 0 ? static_cast<double>(rays.size()) / seconds : 0},
+              {"ratio", reference > 0 ? seconds / reference : 0},
+              {"steps", 0.0},
+              {"fetches", 0.0},
+              {"map_bytes", rival->bytes},
+              {"triangle_bytes", rival->triangle_bytes},
+              {"peak_bytes", rival->peak_bytes},
+              {"build_s", rival->build_seconds},
+              {"threads", options.embree_threads},
+              {"method", best.method}});
+  for (const RivalRun& run : rival->runs) row["methods"][run.method] = median(run.seconds);
+  return row;
+}
+
 void print_table(const nlohmann::json& rows) {
-  fmt::print("{:<20} {:<9} {:>9} {:>9} {:>6} {:>8} {:>8} {:>8} {:>10} {:>10}\n", "technique", "filter", "ms", "Mrays/s",
-             "ratio", "steps", "fetches", "wrong %", "p99 texel", "p99 |dH|");
+  fmt::print("{:<20} {:<9} {:>9} {:>9} {:>6} {:>8} {:>8} {:>8} {:>10} {:>10} {:>8}\n", "technique", "filter", "ms",
+             "Mrays/s", "ratio", "steps", "fetches", "wrong %", "p99 texel", "p99 |dH|", "MB");
   for (const auto& r : rows) {
-    fmt::print("{:<20} {:<9} {:>9.2f} {:>9.2f} {:>6.2f} {:>8.1f} {:>8.1f} {:>8.3f} {:>10.2e} {:>10.2e}\n",
+    fmt::print("{:<20} {:<9} {:>9.2f} {:>9.2f} {:>6.2f} {:>8.1f} {:>8.1f} {:>8.3f} {:>10.2e} {:>10.2e} {:>8.1f}\n",
                r["technique"].get<std::string>(), r["filter"].get<std::string>(), r["median_s"].get<double>() * 1e3,
                r["rays_per_s"].get<double>() / 1e6, r["ratio"].get<double>(), r["steps"].get<double>(),
                r["fetches"].get<double>(), r["wrong_percent"].get<double>(), r["uv_texels"]["p99"].get<double>(),
-               r["height"]["p99"].get<double>());
+               r["height"]["p99"].get<double>(), r["map_bytes"].get<double>() / 1e6);
+    if (r.contains("method"))
+      fmt::print("embree: {} on {} threads, built in {:.2f} s, at most {:.1f} MB\n", r["method"].get<std::string>(),
+                 r["threads"].get<unsigned>(), r["build_s"].get<double>(), r["peak_bytes"].get<double>() / 1e6);
   }
 }
 
@@ -88,6 +127,12 @@ Status run_bench(const Context& context, const BenchOptions& options) {
   for (std::size_t k = 0; k < timing->size(); ++k) {
     ErrorFigures figures = compare_hits(truth, (*counted)[k].hits, height->width, height->height);
     rows.push_back(row_of((*timing)[k], (*timed)[k], figures, reference));
+    rows.back()["map_bytes"] = map_bytes(*registry, (*timing)[k].technique, maps);
+  }
+  if (options.embree) {
+    Result<nlohmann::json> row = race(options, *height, rays, truth, reference);
+    if (!row) return tl::unexpected(row.error());
+    rows.push_back(std::move(*row));
   }
   if (context.json) {
     fmt::print("{}\n", rows.dump(2));
@@ -119,6 +164,12 @@ void add_bench(CLI::App& app, Context& context) {
       ->capture_default_str();
   command->add_option("--repeat", options->repeat, "Timed rounds")->check(CLI::Range(1, 1000))->capture_default_str();
   command->add_option("--set", options->set, "technique.parameter=value");
+  CLI::Option* embree =
+      command->add_flag("--embree", options->embree, "A row for Embree 3 on the same rays: two triangles a cell");
+  command->add_option("--embree-threads", options->embree_threads, "Threads for Embree")
+      ->needs(embree)
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
 }
 
 }  // namespace relievo::cli

@@ -120,9 +120,10 @@ Result<std::vector<std::string>> technique_names(const Registry& registry, const
   for (const std::string& item : given) {
     std::stringstream stream(item);
     for (std::string name; std::getline(stream, name, ',');) {
-      if (name == "all") {
+      if (name == "all" || name == "always") {
         for (const auto& [known, descriptor] : registry.techniques) {
-          if (descriptor.technique_class != TechniqueClass::reference) names.push_back(known);
+          const bool is_meant = name == "all" || descriptor.first_hit == FirstHit::always;
+          if (is_meant && descriptor.technique_class != TechniqueClass::reference) names.push_back(known);
         }
         continue;
       }
@@ -132,7 +133,8 @@ Result<std::vector<std::string>> technique_names(const Registry& registry, const
     }
   }
   if (names.empty())
-    return fail(ErrorCode::usage, "cli.no-technique", "no technique is named; expected one or more, or 'all'");
+    return fail(ErrorCode::usage, "cli.no-technique",
+                "no technique is named; expected one or more, 'all', or 'always'");
   return names;
 }
 

@@ -47,7 +47,8 @@ Result<Settings> parse_settings(const Registry& registry, const std::vector<std:
 /// Parses and opens a backend; with `oracle` allowed the pointer is null.
 Result<std::unique_ptr<Backend>> open(const std::string& name, bool validation);
 
-/// "a,b,c" or repeated options → names; "all" → every technique.
+/// "a,b,c" or repeated options → names; "all" → every technique, "always" → those that claim to find the first
+/// hit always.
 Result<std::vector<std::string>> technique_names(const Registry& registry, const std::vector<std::string>& given);
 
 Result<HeightMap> load_height(const std::string& path, const std::string& address);
@@ -87,6 +88,7 @@ void add_list(CLI::App& app, Context& context);
 void add_describe(CLI::App& app, Context& context);
 void add_compile(CLI::App& app, Context& context);
 void add_bake(CLI::App& app, Context& context);
+void add_certify(CLI::App& app, Context& context);
 void add_trace(CLI::App& app, Context& context);
 void add_render(CLI::App& app, Context& context);
 void add_bench(CLI::App& app, Context& context);

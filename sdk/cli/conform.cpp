@@ -2,7 +2,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "evaluation/evaluation.hpp"
+#include "evaluation/fuzz.hpp"
+#include "evaluation/hard_run.hpp"
 
 namespace relievo::cli {
 
@@ -12,6 +13,11 @@ struct ConformOptions {
   std::vector<std::string> techniques = {"all"}, scenes, heights, backends = {"vulkan", "opengl"}, set;
   std::string address = "repeat", output;
   int ray_image = 1000, repeats = 3;
+  CLI::Option* hard_cases = nullptr;
+  std::string hard_case_folder;
+  int rays = 1000;
+  CLI::Option* fuzz = nullptr;
+  FuzzInput fuzz_input;
 };
 
 void print(const Evaluation& evaluation) {
@@ -30,11 +36,70 @@ void print(const Evaluation& evaluation) {
   }
 }
 
+Result<HardInput> hard_input(const Registry& registry, const ConformOptions& options) {
+  HardInput input;
+  Result<EvaluationInput> shared =
+      make_input(registry, options.techniques, {}, options.heights, options.address, options.set);
+  if (!shared) return tl::unexpected(shared.error());
+  Result<std::vector<HardCase>> cases =
+      options.hard_case_folder.empty() ? own_hard_cases() : load_hard_cases(options.hard_case_folder);
+  if (!cases) return tl::unexpected(cases.error());
+  input.registry = &registry;
+  input.techniques = std::move(shared->techniques);
+  input.backends = options.backends;
+  input.cases = std::move(*cases);
+  for (RayCase& ray_case : shared->ray_cases)
+    input.heights.push_back({ray_case.name, std::move(ray_case.height), ray_case.scale});
+  input.rays = options.rays;
+  input.values = std::move(shared->values);
+  return input;
+}
+
+Status conform_to_hard_cases(const Context& context, const Registry& registry, const ConformOptions& options) {
+  Result<HardInput> input = hard_input(registry, options);
+  if (!input) return tl::unexpected(input.error());
+  Result<HardResult> result = run_hard_cases(*input);
+  if (!result) return tl::unexpected(result.error());
+  if (context.json) {
+    fmt::print("{}\n", to_json(*result).dump(2));
+  } else {
+    print(*result);
+  }
+  if (result->faults() == 0 && result->messages.empty()) return {};
+  return fail(ErrorCode::mismatch, "conform.hard-cases",
+              fmt::format("{} of {} rows break what their technique claims, and there are {} validation messages; "
+                          "expected none",
+                          result->faults(), result->rows.size(), result->messages.size()));
+}
+
+Status fuzz(const Context& context, const Registry& registry, const ConformOptions& options) {
+  FuzzInput input = options.fuzz_input;
+  input.registry = &registry;
+  input.backends = options.backends;
+  Result<std::vector<std::string>> names = technique_names(registry, options.techniques);
+  if (!names) return tl::unexpected(names.error());
+  input.techniques = std::move(*names);
+  Result<FuzzResult> result = run_fuzz(input);
+  if (!result) return tl::unexpected(result.error());
+  if (context.json) {
+    fmt::print("{}\n", to_json(*result).dump(2));
+  } else {
+    print(*result);
+  }
+  if (result->faults == 0 && result->messages.empty()) return {};
+  return fail(
+      ErrorCode::mismatch, "conform.fuzz",
+      fmt::format("{} faults and {} validation messages; expected none", result->faults, result->messages.size()));
+}
+
 Status run_conform(const Context& context, const ConformOptions& options) {
   Result<Registry> registry = context.registry();
   if (!registry) return tl::unexpected(registry.error());
+  if (options.hard_cases->count() > 0) return conform_to_hard_cases(context, *registry, options);
+  if (options.fuzz->count() > 0) return fuzz(context, *registry, options);
   if (options.scenes.empty() && options.heights.empty()) {
-    return fail(ErrorCode::usage, "conform.nothing", "nothing to conform on; expected --scene FILE or --height FILE");
+    return fail(ErrorCode::usage, "conform.nothing",
+                "nothing to conform on; expected --scene FILE, --height FILE, --hard-cases or --fuzz N");
   }
   Result<EvaluationInput> input =
       make_input(*registry, options.techniques, options.scenes, options.heights, options.address, options.set);
@@ -69,10 +134,39 @@ void add_conform(CLI::App& app, Context& context) {
   CLI::App* command =
       add_command(app, context, "conform", "Compare backends with each other, the oracle and the claims",
                   [&context, options] { return run_conform(context, *options); });
-  command->add_option("--techniques", options->techniques, "a,b,… or all")->capture_default_str();
+  command
+      ->add_option("--techniques", options->techniques,
+                   "a,b,…, all, or always: those that claim to find the first hit always")
+      ->capture_default_str();
   command->add_option("--scene", options->scenes, "Scene files: pictures of every drawing stage");
   command->add_option("--height", options->heights,
                       "Height files, each with an optional :scale: rays at 60°, 20° and 8°");
+  options->hard_cases =
+      command
+          ->add_option("--hard-cases", options->hard_case_folder,
+                       "Only the hard cases: those of a folder or file, by default the program's own; each --height "
+                       "gets every kind of ray as well")
+          ->expected(0, 1)
+          ->type_name("[DIR]");
+  command->add_option("--rays", options->rays, "Rays a hard case and address mode")
+      ->check(CLI::Range(1, 10000000))
+      ->needs(options->hard_cases)
+      ->capture_default_str();
+  options->fuzz = command
+                      ->add_option("--fuzz", options->fuzz_input.calls,
+                                   "Only fuzzing: N rays in all, over random maps, rays and parameters")
+                      ->type_name("N")
+                      ->check(CLI::PositiveNumber)
+                      ->excludes(options->hard_cases);
+  command->add_option("--seed", options->fuzz_input.seed, "Of the fuzzing")
+      ->needs(options->fuzz)
+      ->capture_default_str();
+  command->add_option("--round", options->fuzz_input.round, "Only this round of the fuzzing, to see a finding again")
+      ->needs(options->fuzz);
+  command->add_option("--patience", options->fuzz_input.patience, "Seconds that one job of the fuzzing may take")
+      ->needs(options->fuzz)
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->add_option("--address", options->address, "Of the height files")->capture_default_str();
   command->add_option("--backends", options->backends)->delimiter(',')->capture_default_str();
   command->add_option("--ray-image", options->ray_image, "Rays a side of the ray image")

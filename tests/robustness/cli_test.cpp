@@ -90,7 +90,8 @@ TEST_F(Cli, GoodInputSucceeds) {
   write_technique("", good_glsl);
   EXPECT_EQ(run_relievo(compile_user()).exit_code, 0);
   EXPECT_EQ(run_relievo({"--help"}).exit_code, 0);
-  for (const char* command : {"list", "describe", "compile", "bake", "trace", "render", "bench", "conform"}) {
+  for (const char* command :
+       {"list", "describe", "compile", "bake", "certify", "trace", "render", "bench", "conform"}) {
     const ChildResult help = run_relievo({command, "--help"});
     EXPECT_EQ(help.exit_code, 0) << command;
     EXPECT_NE(help.out.find("--json"), std::string::npos) << command;

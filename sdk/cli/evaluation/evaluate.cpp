@@ -16,24 +16,29 @@ std::size_t steps_of(const EvaluationInput& input, std::size_t backends) {
 
 }  // namespace
 
-Result<Evaluation> evaluate(const EvaluationInput& input) {
-  Evaluation evaluation;
+Result<OpenBackends> open_backends(const std::vector<std::string>& names, std::vector<BackendInfo>& infos,
+                                   std::vector<NotRun>& not_run) {
   OpenBackends backends;
-  for (const std::string& name : input.backends) {
+  for (const std::string& name : names) {
     Result<std::unique_ptr<Backend>> backend = open(name, true);
     if (!backend && backend.error().code == ErrorCode::unsupported) {
-      evaluation.not_run.push_back({"backend " + name, backend.error().message});
+      not_run.push_back({"backend " + name, backend.error().message});
       continue;
     }
     if (!backend) return tl::unexpected(backend.error());
-    evaluation.backends.push_back((*backend)->info());
+    infos.push_back((*backend)->info());
     backends[name] = std::move(*backend);
   }
-  if (backends.empty()) {
-    return fail(ErrorCode::unsupported, "evaluation.no-backend",
-                fmt::format("no backend is available: {}",
-                            evaluation.not_run.empty() ? "none was named" : evaluation.not_run.front().reason));
-  }
+  if (!backends.empty()) return backends;
+  return fail(ErrorCode::unsupported, "evaluation.no-backend",
+              fmt::format("no backend is available: {}", not_run.empty() ? "none was named" : not_run.front().reason));
+}
+
+Result<Evaluation> evaluate(const EvaluationInput& input) {
+  Evaluation evaluation;
+  Result<OpenBackends> opened = open_backends(input.backends, evaluation.backends, evaluation.not_run);
+  if (!opened) return tl::unexpected(opened.error());
+  OpenBackends& backends = *opened;
   Progress progress("evaluate", steps_of(input, backends.size()));
   for (auto part : {evaluate_rays, evaluate_pictures, evaluate_cracks}) {
     if (Status status = part(input, backends, evaluation, progress); !status) return tl::unexpected(status.error());

@@ -100,6 +100,10 @@ Result<Evaluation> evaluate(const EvaluationInput& input);
 
 /// The parts of `evaluate`, each filling its rows. `backends` holds the opened ones by name.
 using OpenBackends = std::map<std::string, std::unique_ptr<Backend>>;
+/// Opens the named backends with validation; those that the machine lacks are told in `not_run`. An error when none is
+/// left.
+Result<OpenBackends> open_backends(const std::vector<std::string>& names, std::vector<BackendInfo>& infos,
+                                   std::vector<NotRun>& not_run);
 Status evaluate_rays(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress);
 Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation,
                          Progress& progress);

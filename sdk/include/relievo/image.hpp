@@ -34,6 +34,10 @@ Status write_png(const std::filesystem::path& path, const Image& image);
 Status write_png(const std::filesystem::path& path, int width, int height, int channels,
                  std::span<const std::uint8_t> pixels);
 
+/// The same with 16 bits a channel, in the machine's byte order; the file is what PNG asks for.
+Status write_png(const std::filesystem::path& path, int width, int height, int channels,
+                 std::span<const std::uint16_t> pixels);
+
 /// Writes lossless 32-bit floats, little-endian; 1 or 3 channels (2 and 4 are "image.size").
 Status write_pfm(const std::filesystem::path& path, const Image& image);
 

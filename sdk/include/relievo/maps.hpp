@@ -1,6 +1,7 @@
 /// Baking: what techniques read besides the height map is computed by compute modules on any backend that has compute.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <span>
 #include <string>
@@ -43,6 +44,11 @@ MapLevel map_level(const MapData& map, int level);
 std::size_t texel_count(const MapData& map);
 std::size_t texture_bytes(const MapData& map);
 
+/// All of a map but its texels, for a height map of that extent: `values` ("map.parameter", within their ranges) decide
+/// layers and bits, else the descriptor's defaults.
+MapData map_shape(const MapDescriptor& descriptor, int width, int height, AddressMode address,
+                  const std::map<std::string, double>& values = {});
+
 /// Maps by name; "height" is always there.
 using MapSet = std::map<std::string, MapData, std::less<>>;
 
@@ -55,6 +61,25 @@ MapSet map_set(const HeightMap& height_map);
 /// finite.
 Status bake_map(Backend& backend, const Registry& registry, std::string_view map, MapSet& maps,
                 const std::map<std::string, double>& values = {}, std::vector<std::string>* messages = nullptr);
+
+/// A map as its file has it.
+struct MapFile {
+  MapData map;
+  std::map<std::string, double> values;  ///< parameters that it was baked with, "map.parameter"
+};
+
+/// Writes all levels and layers losslessly as one image, and its description beside it as `<path>.json`: docs/maps.md.
+/// .exr takes any map, .pfm those of 1 or 3 channels, .png those of 8 and 16 bits. Errors: "maps.format" for another
+/// extension or a map that does not fit it, "image.*".
+Status write_map(const std::filesystem::path& path, const MapData& map,
+                 const std::map<std::string, double>& values = {});
+
+/// Reads what write_map wrote. With `shape`, a map without its texels (map_shape), the description is not needed, and
+/// where there is one it must agree.
+/// Errors: "maps.description" when it is missing, unreadable or differs from `shape`; "maps.size" when the image does
+/// not have the extent and channels of that map; "maps.non-finite"; "maps.bits" for a value that the bits do not hold;
+/// "maps.format" for floats in a .png; "image.*".
+Result<MapFile> read_map(const std::filesystem::path& path, const MapData* shape = nullptr);
 
 /// The texture of a map, of its bits: 1, 2 or 4 channels (3 become 4), filtered linearly, with the address mode of the
 /// map.

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "job/program.hpp"
 #include "relievo/maps.hpp"
@@ -71,26 +71,6 @@ Job bake_job(const PreparedProgram& prepared, const MapDescriptor& descriptor, c
   return job;
 }
 
-/// An integer parameter of the map as `program` has it.
-int parameter_of(const ComposedProgram& program, const MapDescriptor& map, std::string_view name, int fallback) {
-  for (const ParameterSlot& slot : program.parameters) {
-    if (slot.name == fmt::format("{}.{}", map.name, name)) return static_cast<int>(slot.value);
-  }
-  return fallback;
-}
-
-/// The map's extent, levels and layers, without its texels.
-MapData empty_map(const MapDescriptor& descriptor, const ComposedProgram& program, const MapData& height) {
-  MapData map{descriptor.name, height.width, height.height, descriptor.channels, {}, height.address};
-  map.dimension = descriptor.dimension;
-  map.depth = parameter_of(program, descriptor, descriptor.layers_parameter, descriptor.layers);
-  if (descriptor.levels == MapLevels::single) return map;
-  map.width = static_cast<int>(std::bit_ceil(static_cast<unsigned>(height.width)));
-  map.height = static_cast<int>(std::bit_ceil(static_cast<unsigned>(height.height)));
-  map.levels = std::bit_width(static_cast<unsigned>(std::max(map.width, map.height)));
-  return map;
-}
-
 }  // namespace
 
 Status bake_map(Backend& backend, const Registry& registry, std::string_view name, MapSet& maps,
@@ -103,14 +83,14 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
     if (Status status = bake_map(backend, registry, input, maps, values, messages); !status) return status;
   }
   const MapData& height = maps.find("height")->second;
-  Result<ComposedProgram> composed =
-      compose_bake(registry, name, height.address, values_for_bake(registry, descriptor, values));
+  const std::map<std::string, double> own = values_for_bake(registry, descriptor, values);
+  Result<ComposedProgram> composed = compose_bake(registry, name, height.address, own);
   if (!composed) return tl::unexpected(composed.error());
   Result<PreparedProgram> prepared = prepare_composed(std::move(*composed), backend.info().shader_target);
   if (!prepared) return tl::unexpected(prepared.error());
 
-  const int bits = descriptor.rounding.empty() ? 32 : parameter_of(prepared->composed, descriptor, "bits", 32);
-  MapData output = empty_map(descriptor, prepared->composed, height);
+  MapData output = map_shape(descriptor, height.width, height.height, height.address, own);
+  const int bits = std::exchange(output.bits, 32);
   Result<JobResult> result = backend.execute(bake_job(*prepared, descriptor, maps, output));
   if (!result) return tl::unexpected(result.error());
   append_messages(*result, messages);

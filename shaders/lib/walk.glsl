@@ -30,6 +30,8 @@ struct WalkPlace {
   float height;
 };
 
+const float RELIEVO_WALK_FAST = 1.0e30;  // texels a unit of t
+
 // A step goes this far beyond the border it aims at, so that it always gets across; what lies on the way is tested from
 // the far side, where a point below the surface is a hit.
 const float RELIEVO_WALK_MARGIN = 1.0e-6;
@@ -62,13 +64,14 @@ vec2 relievo_walk_first_period(vec2 uv) {
   return first;
 }
 
-// Starts a walk at t = interval.enter. Returns false for places so far out that floats cannot tell cells apart.
+// Starts a walk at t = interval.enter. Returns false for places so far out that floats cannot tell cells apart, and for
+// directions so long that their products overflow.
 bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk) {
   walk.extent = vec2(extent);
   vec2 start, start_error, way, way_error, move, move_error;
   relievo_two_product(clamp(relievo_walk_first_period(ray.origin.xy), -RELIEVO_WALK_FAR, RELIEVO_WALK_FAR), walk.extent,
                       start, start_error);
-  relievo_two_product(clamp(ray.direction.xy, -1.0e15, 1.0e15), walk.extent, way, way_error);
+  relievo_two_product(ray.direction.xy, walk.extent, way, way_error);
   relievo_two_product(vec2(min(interval.enter, 1.0e15)), way, move, move_error);
   precise vec2 error = (start_error + (move_error + interval.enter * way_error)) - 0.5;
   vec2 start_cell = floor(start), move_cell = floor(move);
@@ -99,8 +102,8 @@ bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk)
   walk.behind_at_zero = mix(vec2(1.0), vec2(0.0), greaterThanEqual(slope, vec2(0.0)));
   precise vec2 pace = 1.0 / max(abs(slope), vec2(1.0 / RELIEVO_WALK_NEVER));
   walk.pace = pace;
-  vec2 reach = max(abs(start), abs(move));
-  return max(reach.x, reach.y) < RELIEVO_WALK_FAR;
+  vec2 reach = max(abs(start), abs(interval.enter * way));
+  return max(reach.x, reach.y) < RELIEVO_WALK_FAR && speed < RELIEVO_WALK_FAST;
 }
 
 WalkPlace relievo_walk_place(Walk walk, vec2 s) {

@@ -8,7 +8,7 @@ float relievo_cone_encode(float slope) {
   return slope > 0.0 ? min(sqrt(slope) * (1.0 + RELIEVO_CONE_MARGIN), 1.0) : 0.0;
 }
 
-vec2 relievo_cone_decode(vec2 stored) {
-  precise vec2 slope = stored * stored * (1.0 + RELIEVO_CONE_MARGIN);
+float relievo_cone_decode(float stored) {
+  precise float slope = stored * stored * (1.0 + RELIEVO_CONE_MARGIN);
   return slope;
 }

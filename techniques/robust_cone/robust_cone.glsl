@@ -22,9 +22,9 @@ Hit robust_cone_trace(Ray ray) {
     while (steps > 0) {
       --steps;
       RELIEVO_COUNT_STEP();
-      vec4 cone = relievo_robust_cone_at(relievo_fold_cell(walk.cell, walk.extent, constants.heading));
+      vec3 cone = relievo_robust_cone_at(relievo_fold_cell(walk.cell, walk.extent, constants.heading));
       border = relievo_cone_border(walk, constants);
-      float free = relievo_cone_free(walk, constants, cone, border, robust_cone_lift, float(robust_cone_reach));
+      float free = relievo_cone_free(walk, constants, cone, border, float(robust_cone_reach));
       if (free < border) break;
       relievo_walk_on(walk, free + RELIEVO_WALK_MARGIN);
       if (relievo_walk_left(walk) <= 0.0) return relievo_end_of(ray, interval);

@@ -3,8 +3,8 @@
 // r away from the cell, which is at a distance of at least r: (W(r') - A) / r bounds its slope. As r' is at most 5/4 r,
 // slopes come out at most a quarter too steep.
 //
-// Channels 0 and 1 hold the windows of this pass and of the one before, in turn, and 2 and 3 the slopes. The last pass
-// replaces them by what the map holds.
+// Channels 0 and 1 hold the windows of this pass and of the one before, in turn, and 2 the slope. The last pass replaces
+// them by what the map holds.
 #include "shaders/lib/bake.glsl"
 #include "shaders/lib/cone_slope.glsl"
 #include "shaders/lib/fold.glsl"
@@ -38,17 +38,15 @@ void robust_cone_grow(ivec2 cell, int radius, int growth, int from, int to) {
                         robust_cone_window(cell + ivec2(growth, growth), from)));
   relievo_bake_write(cell, to, after);
   if (after <= before) return;
-  float rise = after - robust_cone_apex(cell);
-  precise vec2 slope = vec2(rise, rise - robust_cone_lift) / float(radius);
-  relievo_bake_write(cell, 2, max(relievo_bake_read(cell, 0, 2), slope.x));
-  relievo_bake_write(cell, 3, max(relievo_bake_read(cell, 0, 3), slope.y));
+  precise float slope = (after - robust_cone_apex(cell)) / float(radius);
+  relievo_bake_write(cell, 2, max(relievo_bake_read(cell, 0, 2), slope));
 }
 
 void relievo_bake(ivec2 cell) {
   int pass = relievo_bake_pass();
   if (pass == 0) {
     relievo_bake_write(cell, 0, robust_cone_apex(cell));
-    for (int channel = 1; channel < 4; ++channel) relievo_bake_write(cell, channel, 0.0);
+    for (int channel = 1; channel < 3; ++channel) relievo_bake_write(cell, channel, 0.0);
   } else if (pass < robust_cone_last_pass) {
     int radius = 1;
     int growth = 1;
@@ -60,7 +58,6 @@ void relievo_bake(ivec2 cell) {
   } else {
     relievo_bake_write(cell, 0, robust_cone_highest(cell));
     relievo_bake_write(cell, 1, robust_cone_apex(cell));
-    for (int channel = 2; channel < 4; ++channel)
-      relievo_bake_write(cell, channel, relievo_cone_encode(relievo_bake_read(cell, 0, channel)));
+    relievo_bake_write(cell, 2, relievo_cone_encode(relievo_bake_read(cell, 0, 2)));
   }
 }

@@ -14,9 +14,10 @@
 // replace them by what the map holds.
 #include "shaders/lib/bake.glsl"
 #include "shaders/lib/cone_slope.glsl"
+#include "shaders/lib/cone_windows.glsl"
 #include "shaders/lib/sector.glsl"
 
-const int directional_cone_border_pass = 26;
+const int directional_cone_border_pass = RELIEVO_CONE_WINDOW_PASSES + 1;
 
 struct Sector {
   ivec2 heading;
@@ -50,7 +51,9 @@ float directional_cone_apex(ivec2 cell, ivec2 heading) {
 }
 
 float directional_cone_folded(ivec2 cell, Sector sector, int channel) {
-  FoldedCell folded = relievo_fold_cell(vec2(cell), vec2(relievo_bake_extent()), vec2(sector.heading));
+  ivec2 extent = relievo_bake_extent();
+  if (all(equal(clamp(cell, ivec2(0), extent - 1), cell))) return relievo_bake_read(cell, relievo_bake_layer(), channel);
+  FoldedCell folded = relievo_fold_cell(vec2(cell), vec2(extent), vec2(sector.heading));
   return relievo_bake_read(ivec2(folded.cell), relievo_sector_layer(folded.heading, sector.slice), channel);
 }
 
@@ -82,12 +85,6 @@ void directional_cone_begin(ivec2 cell, Sector sector) {
   relievo_bake_write(cell, 0, max(apex, third));
   relievo_bake_write(cell, 1, 0.0);
   relievo_bake_write(cell, 2, max(third - apex, 0.0));
-}
-
-// Whole multiples of the cuts once that is possible: nothing is then lost to rounding.
-int directional_cone_growth(int columns, int cuts) {
-  int growth = max(1, columns / 4);
-  return cuts > 1 && growth >= cuts ? growth / cuts * cuts : growth;
 }
 
 void directional_cone_grow(ivec2 cell, Sector sector, int columns, int growth, int from, int to) {
@@ -126,11 +123,9 @@ void relievo_bake(ivec2 cell) {
   if (pass == 0) {
     directional_cone_begin(cell, sector);
   } else if (pass < directional_cone_border_pass) {
-    int columns = 2;
-    for (int k = 1; k < pass; ++k) columns += directional_cone_growth(columns, sector.cuts);
+    int columns = relievo_cone_window(pass);
     if (columns - 1 > directional_cone_reach) return;
-    int growth = directional_cone_growth(columns, sector.cuts);
-    directional_cone_grow(cell, sector, columns, growth, (pass - 1) % 2, pass % 2);
+    directional_cone_grow(cell, sector, columns, relievo_cone_growth(pass), (pass - 1) % 2, pass % 2);
   } else if (pass == directional_cone_border_pass) {
     relievo_bake_write(cell, 0, relievo_cone_encode(directional_cone_slope(cell, sector)));
   } else {

@@ -1,15 +1,14 @@
 // Windows that grow around every cell: W(r), the greatest height over the cells at most r away along both axes. The four
 // windows W(r) at the corners of a square make W(r + d), for d <= r. Where W(r') is above W(r), what is highest lies more than
-// r away from the cell, which is at a distance of at least r: (W(r') - A) / r bounds its slope. As r' is at most 5/4 r,
-// slopes come out at most a quarter too steep.
+// r away from the cell, which is at a distance of at least r: (W(r') - A) / r bounds its slope. Slopes come out at
+// most as much too steep as windows grow in a pass.
 //
 // Channels 0 and 1 hold the windows of this pass and of the one before, in turn, and 2 the slope. The last pass replaces
 // them by what the map holds.
 #include "shaders/lib/bake.glsl"
 #include "shaders/lib/cone_slope.glsl"
+#include "shaders/lib/cone_windows.glsl"
 #include "shaders/lib/fold.glsl"
-
-const int robust_cone_last_pass = 25;
 
 float robust_cone_highest(ivec2 cell) {
   FoldedCell folded = relievo_fold_cell(vec2(cell), vec2(relievo_bake_extent()), vec2(1.0));
@@ -26,7 +25,9 @@ float robust_cone_apex(ivec2 cell) {
 }
 
 float robust_cone_window(ivec2 cell, int channel) {
-  FoldedCell folded = relievo_fold_cell(vec2(cell), vec2(relievo_bake_extent()), vec2(1.0));
+  ivec2 extent = relievo_bake_extent();
+  if (all(equal(clamp(cell, ivec2(0), extent - 1), cell))) return relievo_bake_read(cell, 0, channel);
+  FoldedCell folded = relievo_fold_cell(vec2(cell), vec2(extent), vec2(1.0));
   return relievo_bake_read(ivec2(folded.cell), 0, channel);
 }
 
@@ -47,14 +48,10 @@ void relievo_bake(ivec2 cell) {
   if (pass == 0) {
     relievo_bake_write(cell, 0, robust_cone_apex(cell));
     for (int channel = 1; channel < 3; ++channel) relievo_bake_write(cell, channel, 0.0);
-  } else if (pass < robust_cone_last_pass) {
-    int radius = 1;
-    int growth = 1;
-    for (int k = 1; k < pass; ++k) {
-      radius += growth;
-      growth = max(1, radius / 4);
-    }
-    if (radius <= robust_cone_reach) robust_cone_grow(cell, radius, growth, (pass - 1) % 2, pass % 2);
+  } else if (pass <= RELIEVO_CONE_WINDOW_PASSES) {
+    int radius = relievo_cone_window(pass) - 1;
+    if (radius <= robust_cone_reach)
+      robust_cone_grow(cell, radius, relievo_cone_growth(pass), (pass - 1) % 2, pass % 2);
   } else {
     relievo_bake_write(cell, 0, robust_cone_highest(cell));
     relievo_bake_write(cell, 1, robust_cone_apex(cell));

@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include "evaluation/evaluation.hpp"
+#include "report/heat.hpp"
 #include "report/page.hpp"
+#include "report/synthetic.hpp"
 
 namespace relievo::cli {
 
@@ -13,8 +15,49 @@ namespace {
 struct ReportOptions {
   std::vector<std::string> techniques = {"all"}, scenes, heights, backends = {"vulkan", "opengl"}, set;
   std::string address = "repeat", output;
-  int ray_image = 1024, sweep_image = 512, repeats = 3;
+  int ray_image = 256, sweep_image = 128, repeats = 3;
+  bool quick = false;
 };
+
+constexpr int synthetic_size = 256;  // texels a side of the height maps made by rule
+
+/// A few counts at the two angles where techniques part: a look rather than a measurement.
+SweepPlan plan_of(const ReportOptions& options) {
+  SweepPlan plan;
+  plan.image = options.sweep_image;
+  plan.repeats = options.repeats;
+  if (!options.quick) return plan;
+  plan.angles = {20, 8};
+  plan.factors = {0.25, 1, 4};
+  plan.budgets = {64};
+  plan.image = std::min(plan.image, 64);
+  plan.repeats = std::min(plan.repeats, 2);
+  return plan;
+}
+
+/// Takes out height files that are not there, and says so: a report on the others is worth having.
+void leave_out_missing(std::vector<std::string>& heights, std::vector<NotRun>& not_run) {
+  std::erase_if(heights, [&](const std::string& item) {
+    std::error_code error;
+    std::filesystem::path whole = item, path = item.substr(0, item.rfind(':'));
+    bool there = std::filesystem::exists(whole, error) || std::filesystem::exists(path, error);
+    if (!there) not_run.push_back({"height map " + path.string(), "the file is not there"});
+    return !there;
+  });
+}
+
+/// Which plots a map gets: those made by rule tell techniques apart in one.
+std::vector<Plot> draw_plots(const Sweep& sweep, std::size_t files) {
+  std::vector<Plot> plots;
+  if (sweep.rows.empty()) return plots;
+  for (std::size_t i = 0; i < sweep.maps.size(); ++i) {
+    for (const PlotKind& kind : plot_kinds()) {
+      plots.push_back(draw_plot(sweep, sweep.maps[i], kind, sweep.plan.angles));
+      if (i >= files) break;
+    }
+  }
+  return plots;
+}
 
 /// Found out before the measurements, not after.
 Status prepare_folder(const std::filesystem::path& folder) {
@@ -24,21 +67,29 @@ Status prepare_folder(const std::filesystem::path& folder) {
               folder.string());
 }
 
-Result<Report> measure(const EvaluationInput& input, const ReportOptions& options) {
+/// The first height map is judged ray by ray together with the scenes; the sweep covers all of them.
+Result<Report> measure(EvaluationInput input, const ReportOptions& options, std::vector<NotRun> not_run) {
   Report report;
-  Result<Evaluation> evaluation = evaluate(input);
-  if (!evaluation) return tl::unexpected(evaluation.error());
-  Result<Sweep> sweep = run_sweep(input, evaluation->backends.front().name, options.sweep_image);
-  if (!sweep) return tl::unexpected(sweep.error());
-  report.evaluation = std::move(*evaluation);
-  report.sweep = std::move(*sweep);
-  if (!report.sweep.points.empty()) {
-    for (double angle : report.sweep.angles) report.plots.push_back(draw_plot(report.sweep, angle));
-  }
   report.techniques = input.techniques;
   report.pictures = input.pictures;
   report.ray_image = input.ray_image;
   report.repeats = input.repeats;
+  EvaluationInput judged = input;
+  if (judged.ray_cases.size() > 1) judged.ray_cases.resize(1);
+  Result<Evaluation> evaluation = evaluate(judged);
+  if (!evaluation) return tl::unexpected(evaluation.error());
+  report.evaluation = std::move(*evaluation);
+  std::size_t files = input.ray_cases.size();
+  if (!options.quick && files > 0) {
+    for (NamedMap& map : make_synthetic_maps(synthetic_size))
+      input.ray_cases.push_back({map.name, std::move(map.height)});
+  }
+  Result<Sweep> sweep = run_sweep(input, plan_of(options));
+  if (!sweep) return tl::unexpected(sweep.error());
+  report.sweep = std::move(*sweep);
+  report.plots = draw_plots(report.sweep, files);
+  std::vector<NotRun>& all = report.evaluation.not_run;
+  all.insert(all.end(), not_run.begin(), not_run.end());
   return report;
 }
 
@@ -50,10 +101,11 @@ nlohmann::json json_of(const Report& report) {
 }
 
 Status write_files(const Report& report, const nlohmann::json& json, const std::filesystem::path& folder) {
+  if (Status status = write_heat(report.sweep, report.pictures); !status) return status;
   Result<std::string> page = make_page(report);
   if (!page) return tl::unexpected(page.error());
-  if (Status status = write_text(folder / "report.json", json.dump(2) + "\n"); !status) return status;
-  if (Status status = write_text(folder / "rays.csv", rays_csv(report.evaluation)); !status) return status;
+  if (Status status = write_text(folder / "report.json", json.dump() + "\n"); !status) return status;
+  if (Status status = write_text(folder / "report.csv", sweep_csv(report.sweep)); !status) return status;
   return write_text(folder / "index.html", *page);
 }
 
@@ -91,6 +143,13 @@ void print(const Report& report, const std::filesystem::path& folder) {
   for (const Check& c : report.evaluation.checks)
     fmt::print("{} {}: {}; expected {}\n", c.passed ? "pass" : "FAIL", c.name, c.found, c.expected);
   print_techniques(report);
+  const Rerun& rerun = report.sweep.rerun;
+  if (rerun.rows > 0)
+    fmt::print(
+        "\nsweep: {} rows in {:.0f} s; rerun of {} of them changes the time ratio by {:.1f} % (median), {:.1f} % "
+        "(nine of ten stay below), {:.0f} % (worst)\n",
+        report.sweep.rows.size(), report.sweep.seconds, rerun.rows, rerun.median * 100, rerun.p90 * 100,
+        rerun.worst * 100);
   fmt::print("\n{}\n", (folder / "index.html").string());
 }
 
@@ -100,8 +159,13 @@ Status run_report(const Context& context, const ReportOptions& options) {
   if (options.scenes.empty() && options.heights.empty()) {
     return fail(ErrorCode::usage, "report.nothing", "nothing to report on; expected --scene FILE or --height FILE");
   }
+  std::vector<NotRun> not_run;
+  std::vector<std::string> heights = options.heights;
+  leave_out_missing(heights, not_run);
+  if (options.scenes.empty() && heights.empty())
+    return fail(ErrorCode::io, "report.nothing", fmt::format("{}: {}", not_run.front().what, not_run.front().reason));
   Result<EvaluationInput> input =
-      make_input(*registry, options.techniques, options.scenes, options.heights, options.address, options.set);
+      make_input(*registry, options.techniques, options.scenes, heights, options.address, options.set);
   if (!input) return tl::unexpected(input.error());
   std::filesystem::path folder = options.output;
   if (Status status = prepare_folder(folder); !status) return status;
@@ -109,7 +173,7 @@ Status run_report(const Context& context, const ReportOptions& options) {
   input->ray_image = options.ray_image;
   input->repeats = options.repeats;
   input->pictures = folder / "pictures";
-  Result<Report> report = measure(*input, options);
+  Result<Report> report = measure(std::move(*input), options, not_run);
   if (!report) return tl::unexpected(report.error());
   nlohmann::json json = json_of(*report);
   if (Status status = write_files(*report, json, folder); !status) return status;
@@ -135,14 +199,17 @@ void add_report(CLI::App& app, Context& context) {
   command->add_option("--scene", options->scenes, "Scene files: pictures of every drawing stage");
   command->add_option(
       "--height", options->heights,
-      "Height files, each with an optional :scale: rays at 60°, 20° and 8°; step counts are varied on the first");
+      "Height files, each with an optional :scale; the first is judged ray by ray, all are swept. A file that is not "
+      "there is left out");
   command->add_option("--address", options->address, "Of the height files")->capture_default_str();
   command->add_option("--backends", options->backends)->delimiter(',')->capture_default_str();
   command->add_option("--ray-image", options->ray_image, "Rays a side of the ray image")
       ->check(CLI::Range(1, 8192))
       ->take_last()
       ->capture_default_str();
-  command->add_option("--sweep-image", options->sweep_image, "The same where step counts are varied")
+  command
+      ->add_option("--sweep-image", options->sweep_image,
+                   "The same in the sweep over techniques, counts, maps, angles, filters and backends")
       ->check(CLI::Range(1, 2048))
       ->take_last()
       ->capture_default_str();
@@ -151,8 +218,10 @@ void add_report(CLI::App& app, Context& context) {
       ->take_last()
       ->capture_default_str();
   command->add_option("--set", options->set, "technique.parameter=value");
-  command->add_option("-o,--output", options->output, "Folder for index.html, report.json, rays.csv and pictures/")
+  command->add_option("-o,--output", options->output, "Folder for index.html, report.json, report.csv and pictures/")
       ->required();
+  command->add_flag("--quick,!--full", options->quick, "Fewer counts, angles and rays, no height maps made by rule")
+      ->take_last();
 }
 
 }  // namespace relievo::cli

@@ -33,8 +33,9 @@ td.name { white-space: nowrap; }
 figure { margin: 0; }
 figure img { display: block; width: 100%; height: auto; background: #101316; border-radius: 3px; }
 figcaption { font-size: .8rem; line-height: 1.4; margin-top: .3rem; font-variant-numeric: tabular-nums; }
+figure.heat img { image-rendering: pixelated; }
 figcaption b { color: var(--ink); font-weight: 600; }
-.plot { max-width: 760px; margin: .6rem 0 1.2rem; }
+.plot { max-width: 1320px; margin: .6rem 0 1.2rem; }
 .plot svg { display: block; width: 100%; height: auto; }
 @media (max-width: 640px) {
   body { padding: 1.2rem .9rem 3rem; }
@@ -89,16 +90,18 @@ std::string machines_section(const Report& report) {
 Result<std::string> make_page(const Report& report) {
   Result<std::string> gallery = gallery_section(report);
   if (!gallery) return tl::unexpected(gallery.error());
+  Result<std::string> heat = heat_section(report);
+  if (!heat) return tl::unexpected(heat.error());
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>Relievo report</title>\n<style>";
   html += style;
   html += "</style>\n</head>\n<body>\n";
-  html += introduction(report) + checks_section(report) + machines_section(report) + *gallery + rays_section(report) +
-          speed_section(report);
+  html += introduction(report) + checks_section(report) + machines_section(report) + speed_section(report) + *heat +
+          costs_section(report) + rays_section(report) + *gallery;
   html += fmt::format(
-      "<p class=\"soft\">Relievo {}. The figures are in report.json and rays.csv beside this "
+      "<p class=\"soft\">Relievo {}. The figures are in report.json and report.csv beside this "
       "page.</p>\n</body>\n</html>\n",
       escape(RELIEVO_VERSION));
   return html;

@@ -13,7 +13,7 @@ namespace relievo::cli {
 struct Report {
   Evaluation evaluation;
   Sweep sweep;
-  std::vector<Plot> plots;
+  std::vector<Plot> plots;  ///< map by map
   std::vector<std::string> techniques;
   std::filesystem::path pictures;  ///< folder of Evaluation::pictures
   int ray_image = 0, repeats = 0;
@@ -28,11 +28,10 @@ std::string machines_section(const Report& report);
 Result<std::string> gallery_section(const Report& report);
 std::string rays_section(const Report& report);
 std::string speed_section(const Report& report);
+std::string costs_section(const Report& report);
+Result<std::string> heat_section(const Report& report);
 
 /// The row's time over that of relief mapping with the same rays, filter and backend; −1 when there is none.
 double ratio_to_relief(const Evaluation& evaluation, const RayRow& row);
-
-/// Every ray row with all its figures, one line each after a header.
-std::string rays_csv(const Evaluation& evaluation);
 
 }  // namespace relievo::cli

@@ -1,17 +1,12 @@
 #include "report/plot.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+#include <cctype>
+#include <cmath>
 
-extern char** environ;
+#include "report/gnuplot.hpp"
 
 namespace relievo::cli {
 
@@ -23,138 +18,183 @@ constexpr std::array<const char*, 10> colors = {"#332288", "#cc6677", "#117733",
                                                 "#882255", "#44aa99", "#999933", "#aa4499", "#000000"};
 constexpr std::array<int, 7> marks = {7, 5, 9, 11, 13, 6, 4};  // gnuplot's point types: filled ones, then open ones
 
-/// A folder of ours under the system's temporary one, gone with its contents at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::error_code error;
-    std::string name = (std::filesystem::temp_directory_path(error) / "relievo-plot-XXXXXX").string();
-    if (!error && mkdtemp(name.data())) path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string read_text(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+/// What is never wrong is drawn at half a ray, so that a logarithm exists.
+double wrong_lifted(const SweepRow& row) {
+  return std::max(row.wrong_percent(), row.error.percent(1) / 2);
+}
+/// Errors in H below this are the float's, and drawn at it.
+double height_lifted(const SweepRow& row) {
+  constexpr double least = 1e-8;
+  std::uint64_t right = row.error.judged - row.error.missed - row.error.false_hit - row.error.wrong_layer;
+  return right == 0 ? -1 : std::max(row.error.height.p99, least);
+}
+double time_of(const SweepRow& row) {
+  return row.ratio;
+}
+double fetches_of(const SweepRow& row) {
+  return row.error.mean_fetches;
+}
+double steps_of(const SweepRow& row) {
+  return row.error.mean_steps;
 }
 
-/// Runs `gnuplot script`, silent, output to `svg`; the problem in a sentence, or empty.
-std::string run_gnuplot(const std::filesystem::path& script, const std::filesystem::path& svg,
-                        const std::filesystem::path& log) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, svg.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawn_file_actions_addopen(&actions, 2, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  std::string program = "gnuplot", no_settings = "--default-settings", file = script.string();
-  char* arguments[] = {program.data(), no_settings.data(), file.data(), nullptr};
-  pid_t child = 0;
-  int error = posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error == ENOENT) return "gnuplot is not installed";
-  if (error != 0) return fmt::format("gnuplot cannot be started: {}", std::strerror(error));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) return fmt::format("gnuplot is lost: {}", std::strerror(errno));
-  }
-  if (status == 0) return {};
-  return fmt::format("gnuplot fails: {}", read_text(log).substr(0, 300));
-}
-
-void replace_all(std::string& text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-}
-
-/// The element alone, with identifiers that are unique in a page of several plots.
-std::string inline_svg(std::string text, double angle) {
-  std::size_t start = text.find("<svg"), end = text.rfind("</svg>");
-  if (start == std::string::npos || end == std::string::npos) return {};
-  text = text.substr(start, end + 6 - start);
-  for (const char* name : {"gpDot", "gpPt", "gnuplot_plot_"})
-    replace_all(text, name, fmt::format("a{}{}", angle, name));
-  return text;
-}
-
-/// The points of one curve: fastest first, what is never wrong lifted to half a ray so that a logarithm exists.
-std::string curve_data(const Sweep& sweep, const std::string& technique, std::string_view filter, double angle) {
-  std::vector<const SweepPoint*> points;
-  for (const SweepPoint& p : sweep.points) {
-    if (p.technique == technique && p.filter == filter && p.angle == angle && p.ratio > 0) points.push_back(&p);
-  }
-  std::sort(points.begin(), points.end(), [](const SweepPoint* a, const SweepPoint* b) { return a->count < b->count; });
-  std::string data;
-  for (const SweepPoint* p : points)
-    data += fmt::format("{:.6g} {:.6g}\n", p->ratio, std::max(p->wrong_percent, p->resolution / 2));
-  return data;
+std::string style_of(std::size_t technique, bool dashed) {
+  return fmt::format("linecolor rgb '{}' linewidth 1.3 pointtype {} pointsize 0.5 {}",
+                     colors[technique % colors.size()], marks[technique % marks.size()],
+                     dashed ? "dashtype '-'" : "dashtype solid");
 }
 
 std::vector<std::string> techniques_of(const Sweep& sweep) {
   std::vector<std::string> names;
-  for (const SweepPoint& p : sweep.points) {
-    if (std::find(names.begin(), names.end(), p.technique) == names.end()) names.push_back(p.technique);
+  for (const SweepRow& row : sweep.rows) {
+    const std::string& name = row.setting.technique;
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   return names;
 }
 
-}  // namespace
+struct Point {
+  double x = 0, y = 0, order = 0;
+};
 
-std::string plot_script(const Sweep& sweep, double angle) {
-  std::string blocks, curves;
-  std::size_t index = 0;
-  for (const std::string& technique : techniques_of(sweep)) {
-    for (const char* filter : {"hardware", "exact"}) {
-      std::string data = curve_data(sweep, technique, filter, angle);
-      if (data.empty()) continue;
-      bool dashed = std::strcmp(filter, "exact") == 0;
-      std::string block = fmt::format("$c{}{}", index, filter);
-      blocks += fmt::format("{} << EOD\n{}EOD\n", block, data);
-      curves += fmt::format(
-          "{} {} with linespoints linecolor rgb '{}' linewidth 1.6 pointtype {} pointsize 0.6 {} title '{}'",
-          curves.empty() ? "" : ",", block, colors[index % colors.size()], marks[index % marks.size()],
-          dashed ? "dashtype '-'" : "dashtype solid", dashed ? "" : technique);
-    }
-    ++index;
-  }
-  if (curves.empty()) return {};
-  return "set terminal svg noenhanced size 760,520 dynamic font 'sans-serif,13'\n"
-         "set encoding utf8\nset logscale xy\nset grid linecolor rgb '#dddddd' linetype 1\nset border 3 linecolor rgb "
-         "'#555555'\nset tics nomirror\n"
-         "set xlabel 'time, as a ratio to relief 100 + 7'\nset ylabel 'wrong hits, %'\nset format '%g'\n"
-         "set offsets graph 0.03, graph 0.03\nset xlabel offset 0,0.4\nset key outside below horizontal samplen 2 "
-         "maxrows 4\n" +
-         blocks + "plot" + curves + "\n";
+std::string data_of(const std::vector<Point>& points) {
+  std::string text;
+  for (const Point& p : points) text += fmt::format("{:.4g} {:.4g}\n", p.x, p.y);
+  return text;
 }
 
-Plot draw_plot(const Sweep& sweep, double angle) {
-  Plot plot{angle, "", ""};
-  std::string script = plot_script(sweep, angle);
+/// Rows of one panel.
+using Rows = std::vector<const SweepRow*>;
+
+Rows rows_at(const Sweep& sweep, const std::string& map, const PlotKind& kind, double angle) {
+  Rows rows;
+  for (const SweepRow& row : sweep.rows) {
+    bool here = row.map == map && row.angle == angle && row.backend == sweep.backends.front() &&
+                (!kind.exact_only || row.setting.filter == HeightFilter::exact);
+    if (here && kind.x(row) > 0 && kind.y(row) > 0) rows.push_back(&row);
+  }
+  return rows;
+}
+
+/// A technique's curves with one filter: a loop each, through the row in which all have their defaults.
+std::map<std::string, std::vector<Point>> curves_of(const Sweep& sweep, const PlotKind& kind, const Rows& rows,
+                                                    const std::string& technique, HeightFilter filter) {
+  std::map<std::string, std::vector<Point>> curves;
+  const SweepRow* standard = nullptr;
+  for (const SweepRow* row : rows) {
+    if (row->setting.technique != technique || row->setting.filter != filter) continue;
+    if (row->setting.loop.empty()) standard = row;
+    if (row->setting.loop.empty()) continue;
+    curves[row->setting.loop].push_back({kind.x(*row), kind.y(*row), static_cast<double>(row->setting.count)});
+  }
+  if (standard && curves.empty()) curves[""] = {};
+  for (auto& [loop, points] : curves) {
+    auto count = sweep.defaults.find(technique + "." + loop);
+    if (standard)
+      points.push_back({kind.x(*standard), kind.y(*standard), count == sweep.defaults.end() ? 0 : count->second});
+    std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.order < b.order; });
+  }
+  return curves;
+}
+
+/// The corners of the stairs under which nothing lies, from the left.
+std::vector<Point> front_of(const PlotKind& kind, const Rows& rows) {
+  std::vector<Point> points, front;
+  for (const SweepRow* row : rows) points.push_back({kind.x(*row), kind.y(*row)});
+  std::sort(points.begin(), points.end(),
+            [](const Point& a, const Point& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  for (const Point& p : points) {
+    if (front.empty() || p.y < front.back().y) front.push_back(p);
+  }
+  return front;
+}
+
+std::string panel(const Sweep& sweep, const std::string& map, const PlotKind& kind, double angle, int index) {
+  Rows rows = rows_at(sweep, map, kind, angle);
+  std::string blocks, curves;
+  std::size_t technique_index = 0;
+  for (const std::string& technique : techniques_of(sweep)) {
+    for (HeightFilter filter : {HeightFilter::hardware, HeightFilter::exact}) {
+      bool dashed = filter == HeightFilter::exact && !kind.exact_only;
+      for (const auto& [loop, points] : curves_of(sweep, kind, rows, technique, filter)) {
+        std::string block = fmt::format("$p{}c{}{}{}", index, technique_index, to_string(filter), loop);
+        blocks += fmt::format("{} << EOD\n{}EOD\n", block, data_of(points));
+        curves += fmt::format(" {} with linespoints {} notitle,", block, style_of(technique_index, dashed));
+      }
+    }
+    ++technique_index;
+  }
+  if (curves.empty()) return {};
+  std::string front = fmt::format("$p{}front", index);
+  blocks += fmt::format("{} << EOD\n{}EOD\n", front, data_of(front_of(kind, rows)));
+  curves += fmt::format(
+      " {0} with steps linecolor rgb '#999999' linewidth 1 dashtype solid notitle,"
+      " {0} with points linecolor rgb '#000000' linewidth 1.2 pointtype 6 pointsize 1.3 notitle",
+      front);
+  return fmt::format("set title '{}° above the plane'\n", angle) + blocks + "plot" + curves + "\n";
+}
+
+/// A panel without axes that names the techniques.
+std::string legend(const Sweep& sweep) {
+  std::string entries;
+  std::size_t index = 0;
+  for (const std::string& technique : techniques_of(sweep))
+    entries += fmt::format(" NaN with linespoints {} title '{}',", style_of(index++, false), technique);
+  return "unset logscale\nunset border\nunset tics\nunset xlabel\nunset ylabel\nunset grid\nunset title\nset key at "
+         "graph 0.5, graph 0.5 center center vertical maxrows 24 samplen 2 spacing 0.95\nset xrange [0:1]\nset yrange "
+         "[0:1]\nplot" +
+         entries +
+         " NaN with points linecolor rgb '#000000' linewidth 1.2 pointtype 6 pointsize 1.3 title 'not dominated'\n";
+}
+
+std::string identifier(const std::string& text) {
+  std::string result;
+  for (char c : text) result += std::isalnum(static_cast<unsigned char>(c)) ? c : 'x';
+  return result;
+}
+
+}  // namespace
+
+const std::vector<PlotKind>& plot_kinds() {
+  static const std::vector<PlotKind> kinds = {
+      {"timewrong", "Time against wrong hits", "time, as a ratio to the reference", "wrong hits, %", time_of,
+       wrong_lifted, false},
+      {"timeheight", "Time against the 99th percentile of |ΔH| of the hits that are right",
+       "time, as a ratio to the reference", "|ΔH|, 99th percentile", time_of, height_lifted, false},
+      {"fetcheswrong", "Texel reads against wrong hits", "texel reads a ray", "wrong hits, %", fetches_of, wrong_lifted,
+       false},
+      {"stepswrong", "Wrong hits against steps, exact filter", "steps a ray", "wrong hits, %", steps_of, wrong_lifted,
+       true}};
+  return kinds;
+}
+
+std::string plot_script(const Sweep& sweep, const std::string& map, const PlotKind& kind,
+                        const std::vector<double>& angles) {
+  std::string panels;
+  int index = 0;
+  for (double angle : angles) panels += panel(sweep, map, kind, angle, index++);
+  if (panels.empty()) return {};
+  constexpr std::size_t columns = 3;
+  std::size_t lines = (angles.size() + 1 + columns - 1) / columns;
+  return fmt::format(
+             "set terminal svg noenhanced size 1320,{} dynamic font 'sans-serif,12'\nset encoding utf8\n"
+             "set multiplot layout {},{}\nset logscale xy\nset grid linecolor rgb '#dddddd' linetype 1\n"
+             "set border 3 linecolor rgb '#555555'\nset tics nomirror\nset xlabel '{}' offset 0,0.4\nset ylabel '{}' "
+             "offset 1,0\nset format '%g'\nset offsets graph 0.03, graph 0.03\nset key off\n",
+             lines * 420, lines, columns, kind.across, kind.up) +
+         panels + "set key on\n" + legend(sweep) + "unset multiplot\n";
+}
+
+Plot draw_plot(const Sweep& sweep, const std::string& map, const PlotKind& kind, const std::vector<double>& angles) {
+  Plot plot{map, &kind, "", ""};
+  std::string script = plot_script(sweep, map, kind, angles);
   if (script.empty()) {
     plot.problem = "the backend has no timestamps";
     return plot;
   }
-  TemporaryFolder folder;
-  std::ofstream file(folder.path() / "plot.gp");
-  file << script;
-  file.close();
-  if (folder.path().empty() || !file) {
-    plot.problem = "the temporary folder cannot be written";
-    return plot;
-  }
-  plot.problem = run_gnuplot(folder.path() / "plot.gp", folder.path() / "plot.svg", folder.path() / "log");
-  if (!plot.problem.empty()) return plot;
-  plot.svg = inline_svg(read_text(folder.path() / "plot.svg"), angle);
-  if (plot.svg.empty()) plot.problem = "gnuplot wrote no SVG";
+  Drawing drawing = run_gnuplot(script, identifier(map) + kind.name);
+  plot.svg = std::move(drawing.svg);
+  plot.problem = std::move(drawing.problem);
   return plot;
 }
 

@@ -1,4 +1,4 @@
-/// The `ray` stage's figures: a table a height map and angle, and the same as CSV.
+/// The `ray` stage's figures: a table a height map and angle.
 #include <fmt/format.h>
 #include <algorithm>
 #include <tuple>
@@ -93,30 +93,6 @@ std::string rays_section(const Report& report) {
     if (!seen) html += case_html(report.evaluation, rows[i]);
   }
   return html + "</section>\n";
-}
-
-std::string rays_csv(const Evaluation& evaluation) {
-  std::string text =
-      "case,angle,technique,filter,backend,rays,ambiguous,judged,wrong_percent,missed_percent,false_hit_percent,wrong_"
-      "layer_percent,exhausted_percent,"
-      "uv_texels_p50,uv_texels_p99,uv_texels_max,height_p50,height_p99,height_max,steps,fetches,seconds,ratio\n";
-  for (const RayRow& r : evaluation.rays) {
-    const ErrorFigures& e = r.error;
-    std::string name = r.case_name;
-    if (name.find_first_of(",\"\n\r") != std::string::npos) {
-      for (std::size_t at = name.find('"'); at != std::string::npos; at = name.find('"', at + 2)) name.insert(at, "\"");
-      name = '"' + name + '"';
-    }
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", name, r.angle, r.technique,
-                        r.filter, r.backend, e.rays, e.ambiguous, e.judged, e.wrong_percent(), e.percent(e.missed),
-                        e.percent(e.false_hit), e.percent(e.wrong_layer), e.percent(e.exhausted), e.uv_texels.p50,
-                        e.uv_texels.p99, e.uv_texels.max, e.height.p50, e.height.p99, e.height.max, e.mean_steps,
-                        e.mean_fetches);
-    double ratio = ratio_to_relief(evaluation, r);
-    text += r.seconds >= 0 ? fmt::format(",{}", r.seconds) : ",";
-    text += ratio >= 0 ? fmt::format(",{}\n", ratio) : ",\n";
-  }
-  return text;
 }
 
 }  // namespace relievo::cli

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <set>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 #include "relievo/trace.hpp"
 
@@ -10,127 +13,237 @@ namespace relievo::cli {
 
 namespace {
 
-/// The sweep's images are small and its times noisy: it repeats at least this often.
-constexpr int least_repeats = 5;
+/// What times are relative to: the technique that engines run, at its descriptor's counts, with the hardware filter.
+constexpr const char* reference_technique = "relief";
+constexpr double heat_angle = 20;  // degrees, where techniques differ most to the eye
 
-/// The loop that bounds the search is the longest one: relief's linear steps rather than its halvings.
-const Parameter* search_loop(const TechniqueDescriptor& technique) {
-  const Parameter* longest = nullptr;
-  for (const Parameter& p : technique.parameters) {
-    if (p.is_loop && (!longest || p.value > longest->value)) longest = &p;
-  }
-  return longest;
+/// Hits read back at once stay below this.
+constexpr std::size_t largest_read_back = std::size_t{256} << 20;
+constexpr std::size_t bytes_a_hit = 32;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::set<int> counts_of(const Parameter& loop) {
-  std::set<int> counts = {static_cast<int>(loop.value)};
-  for (int count : {8, 16, 32, 64, 128, 256, 400}) {
-    if (count >= loop.minimum && count <= loop.maximum) counts.insert(count);
-  }
-  return counts;
-}
-
-/// The other loops keep their defaults, but none runs longer than the one that is varied.
-void set_loops(const TechniqueDescriptor& technique, const Parameter& varied, int count,
-               std::map<std::string, double>& values) {
-  for (const Parameter& p : technique.parameters) {
-    if (p.is_loop)
-      values[technique.name + "." + p.name] =
-          &p == &varied ? count : std::max(p.minimum, std::min<double>(p.value, count));
-  }
-}
-
-/// Requests of one technique with what each is; the reference comes first.
-struct Batch {
-  std::vector<TraceRequest> requests;
-  std::vector<SweepPoint> points;
+/// One height map with its rays; the same for every backend.
+struct MapRun {
+  const EvaluationInput& input;
+  const SweepPlan& plan;
+  const RayCase& ray_case;
+  const std::vector<Setting>& settings;
+  std::vector<std::vector<Ray>> rays;  ///< one set an angle
+  std::vector<std::vector<Hit>> truth;
+  MapSet maps;
 };
 
-Batch make_batch(const EvaluationInput& input, const TechniqueDescriptor& technique, double angle, double scale) {
-  Batch batch;
-  TraceRequest reference{"relief", HeightFilter::hardware, false, {}};
-  reference.values = {{"ray.scale", scale}, {"relief.linear_steps", 100}, {"relief.binary_steps", 7}};
-  batch.requests.push_back(reference);
-  batch.points.push_back({});
-  const Parameter* loop = search_loop(technique);
-  for (HeightFilter filter : {HeightFilter::hardware, HeightFilter::exact}) {
-    for (int count : loop ? counts_of(*loop) : std::set<int>{0}) {
-      TraceRequest request{technique.name, filter, false, input.values};
-      request.values.try_emplace("ray.scale", scale);
-      if (loop) set_loops(technique, *loop, count, request.values);
-      batch.requests.push_back(std::move(request));
-      batch.points.push_back({technique.name, std::string(to_string(filter)), angle, loop ? loop->name : "", count});
+TraceRequest request_of(const MapRun& run, const Setting& setting, bool count_cost) {
+  TraceRequest request{setting.technique, setting.filter, count_cost, run.input.values};
+  request.values.try_emplace("ray.scale", run.ray_case.scale);
+  if (!setting.loop.empty()) request.values[setting.technique + "." + setting.loop] = setting.count;
+  return request;
+}
+
+/// Bakes `name` and first what it is baked from, each timed apart.
+Status bake_timed(Backend& backend, MapRun& run, const std::string& name, std::vector<MapCost>& costs) {
+  if (run.maps.contains(name)) return {};
+  Result<const MapDescriptor*> map = run.input.registry->map(name);
+  if (!map) return tl::unexpected(map.error());
+  for (const std::string& needed : (*map)->inputs) {
+    if (Status status = bake_timed(backend, run, needed, costs); !status) return status;
+  }
+  auto start = std::chrono::steady_clock::now();
+  if (Status status = bake_map(backend, *run.input.registry, name, run.maps, run.input.values); !status) return status;
+  const HeightMap& height = run.ray_case.height;
+  costs.push_back({run.ray_case.name, name, height.width, height.height, texture_bytes(run.maps.find(name)->second),
+                   seconds_since(start)});
+  return {};
+}
+
+Status bake_all(Backend& backend, MapRun& run, std::vector<MapCost>& costs) {
+  const HeightMap& height = run.ray_case.height;
+  run.maps = map_set(height);
+  costs.push_back(
+      {run.ray_case.name, "height", height.width, height.height, texture_bytes(run.maps.find("height")->second), -1});
+  for (const std::string& technique : run.input.techniques) {
+    for (const std::string& map : run.input.registry->techniques.find(technique)->second.maps) {
+      if (Status status = bake_timed(backend, run, map, costs); !status) return status;
     }
   }
-  return batch;
+  return {};
 }
 
-/// What every batch at one angle shares.
-struct Rays {
-  std::vector<Ray> rays;
-  std::vector<Hit> truth;
-};
+HeatMap heat_map(const MapRun& run, const Setting& setting, const std::vector<Hit>& truth,
+                 const std::vector<Hit>& hits) {
+  constexpr float nothing = std::numeric_limits<float>::quiet_NaN(), wrong = std::numeric_limits<float>::infinity();
+  const HeightMap& height = run.ray_case.height;
+  HeatMap heat{setting.technique, run.plan.image, {}, {}};
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    ErrorFigures one = compare_hits({&truth[i], 1}, {&hits[i], 1}, height.width, height.height);
+    bool right = one.missed + one.false_hit + one.wrong_layer + one.exhausted == 0;
+    heat.steps.push_back(one.judged ? static_cast<float>(hits[i].steps) : nothing);
+    heat.texels.push_back(!one.judged ? nothing : right ? static_cast<float>(one.uv_texels.max) : wrong);
+  }
+  return heat;
+}
 
-Status run_batch(const EvaluationInput& input, Backend& backend, MapSet& maps, const Rays& rays, Batch batch,
-                 Sweep& sweep) {
-  Result<std::vector<TraceResult>> results =
-      trace(backend, *input.registry, maps, rays.rays, batch.requests, std::max(input.repeats, least_repeats));
-  if (!results) return tl::unexpected(results.error());
-  const HeightMap& height = input.ray_cases.front().height;
-  double reference = median(results->front().seconds);
-  for (std::size_t k = 1; k < batch.points.size(); ++k) {
-    SweepPoint& point = batch.points[k];
-    ErrorFigures error = compare_hits(rays.truth, (*results)[k].hits, height.width, height.height);
-    point.wrong_percent = error.wrong_percent() + error.percent(error.exhausted);
-    point.resolution = error.percent(1);
-    point.seconds = median((*results)[k].seconds);
-    if (reference > 0 && point.seconds > 0) point.ratio = point.seconds / reference;
-    sweep.points.push_back(std::move(point));
+bool shown_as_heat(const MapRun& run, const Setting& setting, const Sweep& sweep, double angle) {
+  return run.ray_case.name == sweep.maps.front() && angle == sweep.heat_angle && setting.loop.empty() &&
+         setting.filter == HeightFilter::exact && sweep.backends.size() == 1;
+}
+
+/// Hits, steps and fetches of the settings [first, last): rows[angle · settings + setting].
+Status count_some(MapRun& run, Backend& backend, std::size_t first, std::size_t last, std::vector<SweepRow>& rows,
+                  Sweep& sweep) {
+  std::vector<TraceRequest> requests;
+  for (std::size_t k = first; k < last; ++k) requests.push_back(request_of(run, run.settings[k], true));
+  Result<Job> job =
+      make_trace_job(*run.input.registry, run.maps, run.rays, requests, backend.info().shader_target, 1, true);
+  if (!job) return tl::unexpected(job.error());
+  Result<JobResult> result = backend.execute(*job);
+  if (!result) return tl::unexpected(result.error());
+  const HeightMap& height = run.ray_case.height;
+  for (std::size_t s = 0; s < run.rays.size(); ++s) {
+    for (std::size_t k = first; k < last; ++k) {
+      std::vector<std::byte>& bytes = result->read_backs[s * requests.size() + k - first];
+      std::vector<Hit> hits = read_hits(bytes, run.rays[s], height.address);
+      bytes = {};
+      SweepRow& row = rows[s * run.settings.size() + k];
+      row.error = compare_hits(run.truth[s], hits, height.width, height.height);
+      if (shown_as_heat(run, run.settings[k], sweep, row.angle))
+        sweep.heat.push_back(heat_map(run, run.settings[k], run.truth[s], hits));
+    }
+  }
+  return {};
+}
+
+/// Times of every row, and of the reference before each round over an angle's settings.
+Status time_all(MapRun& run, Backend& backend, bool has_reference, std::vector<SweepRow>& rows) {
+  std::vector<TraceRequest> requests;
+  if (has_reference) {
+    TraceRequest reference{reference_technique, HeightFilter::hardware, false, {{"ray.scale", run.ray_case.scale}}};
+    requests.push_back(reference);
+  }
+  for (const Setting& setting : run.settings) requests.push_back(request_of(run, setting, false));
+  Result<Job> job = make_trace_job(*run.input.registry, run.maps, run.rays, requests, backend.info().shader_target,
+                                   run.plan.repeats, false);
+  if (!job) return tl::unexpected(job.error());
+  Result<JobResult> result = backend.execute(*job);
+  if (!result) return tl::unexpected(result.error());
+  const std::vector<double>& seconds = result->command_seconds;
+  if (seconds.size() != job->commands.size()) return {};  // no timestamps
+  std::size_t round = run.rays.size() * requests.size(), lead = has_reference ? 1 : 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    std::size_t start = r / run.settings.size() * requests.size(), own = start + lead + r % run.settings.size();
+    std::vector<double> times, ratios;
+    for (std::size_t at = 0; at < seconds.size(); at += round) {
+      times.push_back(seconds[at + own]);
+      if (has_reference && seconds[at + start] > 0) ratios.push_back(seconds[at + own] / seconds[at + start]);
+    }
+    auto [fastest, slowest] = std::minmax_element(times.begin(), times.end());
+    rows[r].seconds = median(times);
+    rows[r].spread = rows[r].seconds > 0 ? (*slowest - *fastest) / rows[r].seconds : -1;
+    rows[r].ratio = median(ratios);
+  }
+  return {};
+}
+
+std::vector<SweepRow> empty_rows(const MapRun& run, const std::string& backend) {
+  std::vector<SweepRow> rows;
+  for (double angle : run.plan.angles)
+    for (const Setting& setting : run.settings) rows.push_back({run.ray_case.name, backend, angle, setting, {}});
+  return rows;
+}
+
+Status sweep_map(MapRun& run, Backend& backend, Sweep& sweep) {
+  std::vector<SweepRow> rows = empty_rows(run, backend.info().name);
+  std::size_t a_setting = run.rays.size() * run.rays.front().size() * bytes_a_hit;
+  std::size_t at_once = std::max<std::size_t>(1, largest_read_back / a_setting);
+  for (std::size_t first = 0; first < run.settings.size(); first += at_once) {
+    std::size_t last = std::min(first + at_once, run.settings.size());
+    if (Status status = count_some(run, backend, first, last, rows, sweep); !status) return status;
+  }
+  if (Status status = time_all(run, backend, !sweep.reference.empty(), rows); !status) return status;
+  sweep.rows.insert(sweep.rows.end(), rows.begin(), rows.end());
+  return {};
+}
+
+/// Times the first map of the first backend again.
+Status time_again(MapRun& run, Backend& backend, Sweep& sweep) {
+  std::vector<SweepRow> rows = empty_rows(run, backend.info().name);
+  if (Status status = time_all(run, backend, !sweep.reference.empty(), rows); !status) return status;
+  std::vector<double> changes;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    double first = sweep.rows[r].ratio, second = rows[r].ratio;
+    if (first > 0 && second > 0) changes.push_back(std::abs(second / first - 1));
+  }
+  if (changes.empty()) return {};
+  std::sort(changes.begin(), changes.end());
+  sweep.rerun = {changes.size(), changes[changes.size() / 2], changes[changes.size() * 9 / 10], changes.back()};
+  return {};
+}
+
+MapRun make_run(const EvaluationInput& input, const SweepPlan& plan, const RayCase& ray_case,
+                const std::vector<Setting>& settings) {
+  MapRun run{input, plan, ray_case, settings, {}, {}, {}};
+  Oracle oracle(ray_case.height);
+  for (double angle : plan.angles) {
+    run.rays.push_back(make_view_rays(angle, ray_case.scale, plan.image, plan.image));
+    run.truth.push_back(oracle.trace(run.rays.back()));
+  }
+  return run;
+}
+
+/// Every backend over the maps; the maps that techniques read are baked once, by the first backend.
+Status sweep_backends(const EvaluationInput& input, const std::vector<Setting>& settings, Sweep& sweep) {
+  Progress progress("sweep", (sweep.maps.size() + 1) * input.backends.size());
+  std::vector<MapRun> runs;
+  for (const RayCase& ray_case : input.ray_cases) runs.push_back(make_run(input, sweep.plan, ray_case, settings));
+  for (const std::string& name : input.backends) {
+    Result<std::unique_ptr<Backend>> backend = open(name, false);
+    if (!backend && backend.error().code == ErrorCode::unsupported) {
+      sweep.not_run.push_back({"sweep on " + name, backend.error().message});
+      continue;
+    }
+    if (!backend) return tl::unexpected(backend.error());
+    sweep.backends.push_back(name);
+    for (MapRun& run : runs) {
+      progress.advance(fmt::format("{} on {}", run.ray_case.name, name));
+      if (run.maps.empty()) {
+        if (Status status = bake_all(**backend, run, sweep.costs); !status) return status;
+      }
+      if (Status status = sweep_map(run, **backend, sweep); !status) return status;
+    }
+    if (sweep.backends.size() > 1) continue;
+    progress.advance("rerun on " + name);
+    if (Status status = time_again(runs.front(), **backend, sweep); !status) return status;
   }
   return {};
 }
 
 }  // namespace
 
-Result<Sweep> run_sweep(const EvaluationInput& input, const std::string& backend_name, int image) {
+Result<Sweep> run_sweep(const EvaluationInput& input, const SweepPlan& plan) {
+  auto start = std::chrono::steady_clock::now();
   Sweep sweep;
+  sweep.plan = plan;
   if (input.ray_cases.empty()) return sweep;
-  const RayCase& ray_case = input.ray_cases.front();
-  sweep.case_name = ray_case.name;
-  sweep.backend = backend_name;
-  sweep.image = image;
-  Result<std::unique_ptr<Backend>> backend = open(backend_name, false);
-  if (!backend) return tl::unexpected(backend.error());
-  MapSet maps = map_set(ray_case.height);
-  Oracle oracle(ray_case.height);
-  Progress progress("sweep", sweep.angles.size() * input.techniques.size());
-  for (double angle : sweep.angles) {
-    Rays rays{make_view_rays(angle, ray_case.scale, image, image), {}};
-    rays.truth = oracle.trace(rays.rays);
-    for (const std::string& name : input.techniques) {
-      progress.advance(fmt::format("{} at {}°", name, angle));
-      Result<const TechniqueDescriptor*> technique = input.registry->technique(name);
-      if (!technique) return tl::unexpected(technique.error());
-      Batch batch = make_batch(input, **technique, angle, ray_case.scale);
-      if (Status status = run_batch(input, **backend, maps, rays, std::move(batch), sweep); !status)
-        return tl::unexpected(status.error());
+  for (const RayCase& ray_case : input.ray_cases) sweep.maps.push_back(ray_case.name);
+  if (input.registry->techniques.contains(reference_technique)) sweep.reference = reference_technique;
+  sweep.heat_angle = *std::min_element(plan.angles.begin(), plan.angles.end(), [](double a, double b) {
+    return std::abs(a - heat_angle) < std::abs(b - heat_angle);
+  });
+  Result<std::vector<Setting>> settings = make_settings(input, plan);
+  if (!settings) return tl::unexpected(settings.error());
+  for (const std::string& name : input.techniques) {
+    for (const Parameter& p : input.registry->techniques.find(name)->second.parameters) {
+      auto given = input.values.find(name + "." + p.name);
+      if (p.is_loop) sweep.defaults[name + "." + p.name] = given == input.values.end() ? p.value : given->second;
     }
   }
+  if (Status status = sweep_backends(input, *settings, sweep); !status) return tl::unexpected(status.error());
+  mark_best(sweep.rows);
+  sweep.seconds = seconds_since(start);
   return sweep;
-}
-
-nlohmann::json to_json(const Sweep& sweep) {
-  nlohmann::json points = nlohmann::json::array();
-  for (const SweepPoint& p : sweep.points) {
-    nlohmann::json point = {
-        {"technique", p.technique}, {"filter", p.filter}, {"angle", p.angle}, {"wrong_percent", p.wrong_percent}};
-    if (!p.loop.empty()) point.update({{"loop", p.loop}, {"count", p.count}});
-    if (p.seconds >= 0) point["seconds"] = p.seconds;
-    if (p.ratio >= 0) point["ratio"] = p.ratio;
-    points.push_back(std::move(point));
-  }
-  return {
-      {"case", sweep.case_name}, {"backend", sweep.backend}, {"rays", sweep.image * sweep.image}, {"points", points}};
 }
 
 }  // namespace relievo::cli

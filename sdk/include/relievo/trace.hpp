@@ -36,6 +36,16 @@ Result<PreparedProgram> prepare(const Registry& registry, Permutation permutatio
 Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const Ray> rays,
                            std::span<const TraceRequest> requests, std::string_view shader_target, int repeats = 1);
 
+/// The same for several sets of rays: requests that differ in uniform values alone share a program, and all sets do.
+/// Command (repeat · sets + s) · requests + k traces set s with request k. With `read_hits`, read-back s · requests + k
+/// holds its hits; without, nothing is read back, and the job's times are all that is wanted of it.
+Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const std::vector<Ray>> sets,
+                           std::span<const TraceRequest> requests, std::string_view shader_target, int repeats,
+                           bool read_hits);
+
+/// The hits in one read-back of such a job; u and v in the rays' own tiles.
+std::vector<Hit> read_hits(const std::vector<std::byte>& read_back, std::span<const Ray> rays, AddressMode address);
+
 struct TraceResult {
   std::vector<Hit> hits;        ///< one a ray; u and v in the rays' own tiles
   std::vector<double> seconds;  ///< one a repeat, by the GPU's clock; empty without timestamps

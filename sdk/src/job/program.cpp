@@ -37,9 +37,13 @@ bool owns(const Registry& registry, const Permutation& permutation, const std::s
 
 }  // namespace
 
-Result<PreparedProgram> prepare(const Registry& registry, Permutation permutation, std::string_view shader_target) {
+Result<ComposedProgram> compose_known(const Registry& registry, Permutation permutation) {
   std::erase_if(permutation.values, [&](const auto& entry) { return !owns(registry, permutation, entry.first); });
-  Result<ComposedProgram> composed = compose(registry, permutation);
+  return compose(registry, permutation);
+}
+
+Result<PreparedProgram> prepare(const Registry& registry, Permutation permutation, std::string_view shader_target) {
+  Result<ComposedProgram> composed = compose_known(registry, std::move(permutation));
   if (!composed) return tl::unexpected(composed.error());
   return prepare_composed(std::move(*composed), shader_target);
 }

@@ -9,6 +9,9 @@
 
 namespace relievo {
 
+/// Composes; values of owners that the permutation has not are dropped.
+Result<ComposedProgram> compose_known(const Registry& registry, Permutation permutation);
+
 /// Compiles a composed program for what a backend consumes.
 Result<PreparedProgram> prepare_composed(ComposedProgram composed, std::string_view shader_target);
 

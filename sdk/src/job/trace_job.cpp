@@ -1,4 +1,5 @@
 /// The `ray` stage as a Job.
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -83,55 +84,139 @@ std::array<std::uint32_t, 3> groups_for(std::size_t rays) {
   return {row, (groups + row - 1) / row, 1};
 }
 
+/// The programs of a job. Permutations that differ in uniform values alone share one: it is compiled once, by us and by
+/// the driver.
+class SharedPrograms {
+ public:
+  Result<int> index_of(const ComposedProgram& composed, std::string_view shader_target, Job& job) {
+    auto [known, is_new] = indices_.try_emplace(identity(composed), static_cast<int>(job.programs.size()));
+    if (!is_new) return known->second;
+    Result<PreparedProgram> prepared = prepare_composed(composed, shader_target);
+    if (!prepared) return tl::unexpected(prepared.error());
+    job.programs.push_back(std::move(prepared->program));
+    return known->second;
+  }
+
+ private:
+  static std::string identity(const ComposedProgram& composed) {
+    std::string text;
+    for (const ComposedShader& shader : composed.shaders) text += shader.text;
+    for (const ParameterSlot& slot : composed.parameters) {
+      if (slot.binding == BindingTime::specialization) text += fmt::format("/{}={}", slot.constant_id, slot.value);
+    }
+    return text;
+  }
+
+  std::map<std::string, int> indices_;
+};
+
+Permutation permutation_of(const TraceRequest& request, AddressMode address) {
+  Permutation permutation;
+  permutation.stage = "ray";
+  permutation.roles["view"] = request.technique;
+  permutation.filter = request.filter;
+  permutation.address = address;
+  permutation.count_cost = request.count_cost;
+  permutation.values = request.values;
+  return permutation;
+}
+
+/// The dispatch of one request without its rays and hits.
+Result<Dispatch> make_dispatch(const Registry& registry, const MapSet& maps, const TraceRequest& request,
+                               std::string_view shader_target, SharedPrograms& programs, Job& job) {
+  Result<ComposedProgram> composed =
+      compose_known(registry, permutation_of(request, maps.find("height")->second.address));
+  if (!composed) return tl::unexpected(composed.error());
+  Result<int> program = programs.index_of(*composed, shader_target, job);
+  if (!program) return tl::unexpected(program.error());
+  Dispatch dispatch;
+  dispatch.program = *program;
+  bind_maps(*composed, maps, job, dispatch.resources);
+  bind_parameters(*composed, job, dispatch.resources);
+  return dispatch;
+}
+
+/// Buffers of one set of rays.
+struct SetBuffers {
+  int batch = 0, rays = 0, hits = -1;
+};
+
+SetBuffers add_set(const std::vector<Ray>& rays, AddressMode address, Job& job) {
+  std::array<std::uint32_t, 4> count = {static_cast<std::uint32_t>(rays.size()), 0, 0, 0};
+  SetBuffers set;
+  set.batch = static_cast<int>(job.buffers.size());
+  job.buffers.push_back(make_buffer("Batch", count.data(), sizeof(count)));
+  set.rays = static_cast<int>(job.buffers.size());
+  job.buffers.push_back(pack_rays(rays, address));
+  return set;
+}
+
+/// Hits that nobody reads share a buffer.
+int hits_buffer(SetBuffers& set, std::size_t rays, bool read_hits, Job& job) {
+  if (set.hits >= 0 && !read_hits) return set.hits;
+  set.hits = static_cast<int>(job.buffers.size());
+  job.buffers.push_back({"Hits", rays * sizeof(PackedHit), {}});
+  if (read_hits) job.read_backs.push_back({ReadBack::Source::buffer, set.hits, 0});
+  return set.hits;
+}
+
 }  // namespace
 
-Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const Ray> rays,
-                           std::span<const TraceRequest> requests, std::string_view shader_target, int repeats) {
-  if (rays.empty()) return fail(ErrorCode::usage, "trace.no-rays", "there are no rays to trace; expected at least one");
-  AddressMode address = maps.at("height").address;
+Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const std::vector<Ray>> sets,
+                           std::span<const TraceRequest> requests, std::string_view shader_target, int repeats,
+                           bool read_hits) {
   Job job;
   job.name = "trace";
-  std::array<std::uint32_t, 4> count = {static_cast<std::uint32_t>(rays.size()), 0, 0, 0};
-  job.buffers.push_back(make_buffer("Batch", count.data(), sizeof(count)));
-  job.buffers.push_back(pack_rays(rays, address));
-  std::vector<Command> round;
+  std::vector<SetBuffers> buffers;
+  for (const std::vector<Ray>& rays : sets) {
+    if (rays.empty())
+      return fail(ErrorCode::usage, "trace.no-rays", "there are no rays to trace; expected at least one");
+    buffers.push_back(add_set(rays, maps.find("height")->second.address, job));
+  }
+  SharedPrograms programs;
+  std::vector<Dispatch> dispatches;
   for (const TraceRequest& request : requests) {
-    Permutation permutation;
-    permutation.stage = "ray";
-    permutation.roles["view"] = request.technique;
-    permutation.filter = request.filter;
-    permutation.address = address;
-    permutation.count_cost = request.count_cost;
-    permutation.values = request.values;
-    Result<PreparedProgram> prepared = prepare(registry, std::move(permutation), shader_target);
-    if (!prepared) return tl::unexpected(prepared.error());
-    Dispatch dispatch;
-    dispatch.program = static_cast<int>(job.programs.size());
-    dispatch.resources = {{0, batch_binding, 0}, {0, rays_binding, 1}};
-    int hits = bind_buffer(0, hits_binding, {"Hits", rays.size() * sizeof(PackedHit), {}}, job, dispatch.resources);
-    bind_maps(prepared->composed, maps, job, dispatch.resources);
-    bind_parameters(prepared->composed, job, dispatch.resources);
-    keep_contract(prepared->program, dispatch.resources);
-    dispatch.groups = groups_for(rays.size());
-    job.programs.push_back(std::move(prepared->program));
-    job.read_backs.push_back({ReadBack::Source::buffer, hits, 0});
-    round.emplace_back(std::move(dispatch));
+    Result<Dispatch> dispatch = make_dispatch(registry, maps, request, shader_target, programs, job);
+    if (!dispatch) return tl::unexpected(dispatch.error());
+    dispatches.push_back(std::move(*dispatch));
+  }
+  std::vector<Command> round;
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    for (Dispatch dispatch : dispatches) {
+      dispatch.resources.push_back({0, batch_binding, buffers[s].batch});
+      dispatch.resources.push_back({0, rays_binding, buffers[s].rays});
+      dispatch.resources.push_back({0, hits_binding, hits_buffer(buffers[s], sets[s].size(), read_hits, job)});
+      keep_contract(job.programs[static_cast<std::size_t>(dispatch.program)], dispatch.resources);
+      dispatch.groups = groups_for(sets[s].size());
+      round.emplace_back(std::move(dispatch));
+    }
   }
   for (int i = 0; i < repeats; ++i) job.commands.insert(job.commands.end(), round.begin(), round.end());
   return job;
+}
+
+Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const Ray> rays,
+                           std::span<const TraceRequest> requests, std::string_view shader_target, int repeats) {
+  const std::vector<Ray> set(rays.begin(), rays.end());
+  return make_trace_job(registry, maps, {&set, 1}, requests, shader_target, repeats, true);
+}
+
+std::vector<Hit> read_hits(const std::vector<std::byte>& read_back, std::span<const Ray> rays, AddressMode address) {
+  std::vector<Hit> hits;
+  hits.reserve(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    PackedHit packed;
+    std::memcpy(&packed, read_back.data() + i * sizeof(PackedHit), sizeof(PackedHit));
+    hits.push_back(unpack(packed, rays[i], address));
+  }
+  return hits;
 }
 
 std::vector<TraceResult> read_trace(const Job& job, const JobResult& result, std::span<const Ray> rays,
                                     AddressMode address, std::size_t requests) {
   std::vector<TraceResult> traces(requests);
   for (std::size_t k = 0; k < requests; ++k) {
-    const std::vector<std::byte>& bytes = result.read_backs.at(k);
-    traces[k].hits.reserve(rays.size());
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      PackedHit packed;
-      std::memcpy(&packed, bytes.data() + i * sizeof(PackedHit), sizeof(PackedHit));
-      traces[k].hits.push_back(unpack(packed, rays[i], address));
-    }
+    traces[k].hits = read_hits(result.read_backs.at(k), rays, address);
     for (std::size_t c = k; c < job.commands.size() && c < result.command_seconds.size(); c += requests) {
       traces[k].seconds.push_back(result.command_seconds[c]);
     }

@@ -1,0 +1,29 @@
+/// The non-dominated set: what is worth its time.
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "report/sweep.hpp"
+
+namespace relievo::cli {
+
+void mark_best(std::vector<SweepRow>& rows) {
+  using Place = std::tuple<std::string, double, std::string>;
+  std::map<Place, std::vector<SweepRow*>> places;
+  for (SweepRow& row : rows) {
+    row.best = false;
+    if (row.ratio > 0) places[{row.map, row.angle, row.backend}].push_back(&row);
+  }
+  for (auto& [place, list] : places) {
+    std::stable_sort(list.begin(), list.end(), [](const SweepRow* a, const SweepRow* b) {
+      return std::pair(a->ratio, a->wrong_percent()) < std::pair(b->ratio, b->wrong_percent());
+    });
+    double least = 101;
+    for (SweepRow* row : list) {
+      row->best = row->wrong_percent() < least;
+      least = std::min(least, row->wrong_percent());
+    }
+  }
+}
+
+}  // namespace relievo::cli

@@ -4,31 +4,17 @@
 // of the slope s: for every cell d at the distance g >= 1 from c, as far as the map's reach, nothing in d is above A + s g.
 // g is the distance of the two squares in the max norm, in cells: a whole number.
 #include "cone_slope.glsl"
-#include "walk.glsl"
+#include "walk_search.glsl"
 
 // What stays the same along a ray.
 struct ConeRay {
-  vec2 heading;
-  vec2 pace;     // s a cell
   float fall;    // s a unit of H; without end for rays that do not fall
   float spread;  // cells a unit of s, in the max norm
 };
 
 ConeRay relievo_cone_ray(Walk walk) {
-  ConeRay constants;
-  constants.heading = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(walk.slope, vec2(0.0)));
-  precise vec2 pace = 1.0 / max(abs(walk.slope), vec2(1.0 / RELIEVO_WALK_NEVER));
   precise float fall = 1.0 / max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER);
-  constants.pace = pace;
-  constants.fall = fall;
-  constants.spread = max(abs(walk.slope.x), abs(walk.slope.y));
-  return constants;
-}
-
-float relievo_cone_border(Walk walk, ConeRay constants) {
-  vec2 inside = mix(1.0 - walk.fraction, walk.fraction, greaterThanEqual(constants.heading, vec2(0.0)));
-  precise vec2 borders = (1.0 - inside) * constants.pace;
-  return min(borders.x, borders.y);
+  return ConeRay(fall, max(abs(walk.slope.x), abs(walk.slope.y)));
 }
 
 // How far the ray is let through by `cone` = (M, A, √s). Less than `border`, the way to the cell's border, means that it may
@@ -38,10 +24,10 @@ float relievo_cone_border(Walk walk, ConeRay constants) {
 // long as height + rise x > A + s spread (x - border). This holds up to the root x of that if it holds at the border, which
 // it does where x >= border; and at the border the ray is above A, so within c it is above M. The margin keeps touching from
 // passing for above.
-float relievo_cone_free(Walk walk, ConeRay constants, vec3 cone, float border, float reach) {
-  precise float in_cell = min(border, (walk.height - cone.x) * constants.fall);
+float relievo_cone_free(Walk walk, WalkPlace place, ConeRay constants, vec3 cone, float border, float reach) {
+  precise float in_cell = min(border, (place.height - cone.x) * constants.fall);
   precise float widening = relievo_cone_decode(cone.z) * constants.spread;
-  precise float above = (walk.height - cone.y) + widening * border;
+  precise float above = (place.height - cone.y) + widening * border;
   precise float met = above / max(widening - walk.rise, 1.0 / RELIEVO_WALK_FAR) * (1.0 - RELIEVO_CONE_MARGIN);
   return max(in_cell, min(met, border + reach));
 }

@@ -176,8 +176,3 @@ Hit relievo_walk_hit(Ray ray, Walk walk, vec2 s) {
   hit.point = vec3(uv, place.height);
   return hit;
 }
-
-// The step budget ran out at s.
-Hit relievo_walk_exhausted(Ray ray, Interval interval, Walk walk, vec2 s) {
-  return relievo_hit_at(ray, RELIEVO_EXHAUSTED, clamp(relievo_walk_t(walk, s), interval.enter, interval.exit));
-}

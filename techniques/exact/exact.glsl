@@ -2,8 +2,7 @@
 //
 // The ray is straight, so it leaves a node unhurt if it stays above the node's maximum up to the border; the walk then tries
 // the next coarser node. Else it goes on to where it sinks to the maximum, and descends. At level 0 the cell is solved.
-// As in techniques/quadrant_maxima, cells are solved outside the loop that looks for them.
-#include "shaders/lib/walk.glsl"
+#include "shaders/lib/walk_search.glsl"
 
 // Cells of the node that lie ahead of this one, along each axis; nodes end where the map does. What a clamped map has
 // beyond its edge is bounded by the outermost nodes, without end.
@@ -33,55 +32,33 @@ float exact_free(Walk walk, WalkPlace place, float fall, int level, out float bo
 
 Hit exact_trace(Ray ray) {
   Interval interval;
-  if (!relievo_interval(ray, interval)) {
-    return relievo_hit_at(ray, interval.end_status == RELIEVO_OUTSIDE ? RELIEVO_OUTSIDE : RELIEVO_MISS, 0.0);
-  }
   Walk walk;
-  if (!relievo_walk_start(ray, interval, textureSize(relievo_height_map, 0), walk)) {
-    return relievo_hit_at(ray, RELIEVO_EXHAUSTED, interval.enter);
-  }
+  Hit hit;
+  if (!relievo_search_begin(ray, textureSize(relievo_height_map, 0), interval, walk, hit)) return hit;
   precise float fall = 1.0 / max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER);
   int top = relievo_max_pyramid_top();
   int level = min(exact_start_level, top);
-  vec2 s = vec2(0.0);
-  int steps = exact_max_steps;
-  float hit = RELIEVO_WALK_NEVER;
-  bool starts_inside = false;
-  bool ends = false;
-  while (steps > 0 && !ends) {
-    while (steps > 0) {
-      while (steps > 0) {
-        --steps;
+  WalkSearch search = relievo_search_start(exact_max_steps);
+  while (relievo_search_is_open(search)) {
+    while (search.steps > 0) {
+      while (search.steps > 0) {
+        --search.steps;
         RELIEVO_COUNT_STEP();
         float border;
-        float free = exact_free(walk, relievo_walk_place(walk, s), fall, level, border);
+        float free = exact_free(walk, relievo_walk_place(walk, search.s), fall, level, border);
         bool passes = free >= border;
         if (!passes && level == 0) break;
-        s = relievo_walk_on(s, passes ? border + RELIEVO_WALK_MARGIN : max(free, 0.0));
         level = passes ? min(level + 1, top) : level - 1;
-        ends = free > 0.0 && relievo_walk_left(walk, s) <= 0.0;  // descending where it stands says nothing of an end
-        if (ends || relievo_walk_is_far(s)) break;
+        if (!passes && free <= 0.0) continue;  // descends where it stands
+        if (!relievo_search_pass(walk, search, passes ? border + RELIEVO_WALK_MARGIN : free)) break;
       }
-      if (ends || level > 0) break;
-      WalkPlace place = relievo_walk_place(walk, s);
-      vec4 corners = relievo_height_corners(place.cell, walk.extent);
-      float border = relievo_walk_border(walk, place);
-      hit = relievo_walk_solve(walk, place, corners, min(border, max(relievo_walk_left(walk, s), 0.0)));
-      if (hit < RELIEVO_WALK_NEVER) {
-        bool is_below = relievo_cell_clearance(corners, vec3(place.fraction, place.height)) < 0.0;
-        starts_inside = is_below && relievo_walk_t(walk, s) == 0.0;
-        break;
-      }
-      s = relievo_walk_on(s, border + RELIEVO_WALK_MARGIN);
+      if (search.ends || level > 0) break;
+      WalkPlace place = relievo_walk_place(walk, search.s);
+      bool goes_on = relievo_search_solve(walk, place, relievo_height_corners(place.cell, walk.extent), search);
       level = min(1, top);
-      ends = relievo_walk_left(walk, s) <= 0.0;
-      if (ends || relievo_walk_is_far(s)) break;
+      if (!goes_on) break;
     }
-    if (hit < RELIEVO_WALK_NEVER) break;
-    relievo_walk_rebase(walk, s);
+    if (relievo_search_is_open(search)) relievo_walk_rebase(walk, search.s);
   }
-  if (starts_inside) return relievo_hit_at(ray, RELIEVO_INSIDE, 0.0);
-  if (hit < RELIEVO_WALK_NEVER) return relievo_walk_hit(ray, walk, relievo_walk_on(s, hit));
-  if (ends) return relievo_end_of(ray, interval);
-  return relievo_walk_exhausted(ray, interval, walk, s);
+  return relievo_search_result(ray, interval, walk, search);
 }

@@ -2,10 +2,7 @@
 // 1, n, nr and nr² cells ahead. Within a window the ray cannot meet the surface before it falls to E: it goes on to there or to
 // the window's border, whichever comes first, in the window that lets it go furthest. Where not even the cell lets it
 // through, the cell is solved.
-//
-// Rays that run side by side are executed in step, so that what one of them does costs all of them. Hence two loops: the
-// inner one only reads windows, and cells are solved outside it, when every ray has got to one.
-#include "shaders/lib/walk.glsl"
+#include "shaders/lib/walk_search.glsl"
 
 struct QuadrantMaximaPace {
   vec4 u, v;   // s from a window's begin to its end
@@ -32,50 +29,25 @@ float quadrant_maxima_free(Walk walk, QuadrantMaximaPace pace, WalkPlace place, 
 
 Hit quadrant_maxima_trace(Ray ray) {
   Interval interval;
-  if (!relievo_interval(ray, interval)) {
-    return relievo_hit_at(ray, interval.end_status == RELIEVO_OUTSIDE ? RELIEVO_OUTSIDE : RELIEVO_MISS, 0.0);
-  }
   Walk walk;
-  if (!relievo_walk_start(ray, interval, textureSize(relievo_cell_corners_map, 0), walk)) {
-    return relievo_hit_at(ray, RELIEVO_EXHAUSTED, interval.enter);
-  }
+  Hit hit;
+  if (!relievo_search_begin(ray, textureSize(relievo_cell_corners_map, 0), interval, walk, hit)) return hit;
   QuadrantMaximaPace pace = quadrant_maxima_pace(walk);
-  vec2 s = vec2(0.0);
-  int steps = quadrant_maxima_max_steps;
-  float hit = RELIEVO_WALK_NEVER;
-  bool starts_inside = false;
-  bool ends = false;  // kept apart from s: a driver may end long loops by itself, and that is no miss
-  while (steps > 0 && !ends) {
-    while (steps > 0) {
-      while (steps > 0) {
-        --steps;
+  WalkSearch search = relievo_search_start(quadrant_maxima_max_steps);
+  while (relievo_search_is_open(search)) {
+    while (search.steps > 0) {
+      while (search.steps > 0) {
+        --search.steps;
         RELIEVO_COUNT_STEP();
         float border;
-        float free = quadrant_maxima_free(walk, pace, relievo_walk_place(walk, s), border);
-        if (free < border) break;
-        s = relievo_walk_on(s, free + RELIEVO_WALK_MARGIN);
-        ends = relievo_walk_left(walk, s) <= 0.0;
-        if (ends || relievo_walk_is_far(s)) break;
+        float free = quadrant_maxima_free(walk, pace, relievo_walk_place(walk, search.s), border);
+        if (free < border || !relievo_search_pass(walk, search, free + RELIEVO_WALK_MARGIN)) break;
       }
-      if (ends) break;
-      WalkPlace place = relievo_walk_place(walk, s);
-      vec4 corners = relievo_cell_corners_at(place.cell, walk.extent);
-      float border = relievo_walk_border(walk, place);
-      hit = relievo_walk_solve(walk, place, corners, min(border, max(relievo_walk_left(walk, s), 0.0)));
-      if (hit < RELIEVO_WALK_NEVER) {
-        bool is_below = relievo_cell_clearance(corners, vec3(place.fraction, place.height)) < 0.0;
-        starts_inside = is_below && relievo_walk_t(walk, s) == 0.0;
-        break;
-      }
-      s = relievo_walk_on(s, border + RELIEVO_WALK_MARGIN);
-      ends = relievo_walk_left(walk, s) <= 0.0;
-      if (ends || relievo_walk_is_far(s)) break;
+      if (search.ends) break;
+      WalkPlace place = relievo_walk_place(walk, search.s);
+      if (!relievo_search_solve(walk, place, relievo_cell_corners_at(place.cell, walk.extent), search)) break;
     }
-    if (hit < RELIEVO_WALK_NEVER) break;
-    relievo_walk_rebase(walk, s);
+    if (relievo_search_is_open(search)) relievo_walk_rebase(walk, search.s);
   }
-  if (starts_inside) return relievo_hit_at(ray, RELIEVO_INSIDE, 0.0);
-  if (hit < RELIEVO_WALK_NEVER) return relievo_walk_hit(ray, walk, relievo_walk_on(s, hit));
-  if (ends) return relievo_end_of(ray, interval);
-  return relievo_walk_exhausted(ray, interval, walk, s);
+  return relievo_search_result(ray, interval, walk, search);
 }

@@ -21,13 +21,14 @@ ConeRay relievo_cone_ray(Walk walk) {
 // meet the surface in the cell.
 //
 // From the border on, the ray is at most spread · (way from the border) cells away from c, so it stays above the cone as
-// long as height + rise x > A + s spread (x - border). This holds up to the root x of that if it holds at the border, which
-// it does where x >= border; and at the border the ray is above A, so within c it is above M. The margin keeps touching from
-// passing for above.
+// long as height + rise x > A + s spread (x - border). This holds up to the root x of that if it holds at the border. That is
+// asked, and of where the ray is too, since a rising ray may come from below; so within c it is above A, hence above M. The
+// margin keeps touching from passing for above.
 float relievo_cone_free(Walk walk, WalkPlace place, ConeRay constants, vec3 cone, float border, float reach) {
   precise float in_cell = min(border, (place.height - cone.x) * constants.fall);
   precise float widening = relievo_cone_decode(cone.z) * constants.spread;
   precise float above = (place.height - cone.y) + widening * border;
   precise float met = above / max(widening - walk.rise, 1.0 / RELIEVO_WALK_FAR) * (1.0 - RELIEVO_CONE_MARGIN);
-  return max(in_cell, min(met, border + reach));
+  precise float at_border = place.height + walk.rise * border;
+  return min(place.height, at_border) > cone.y ? max(in_cell, min(met, border + reach)) : in_cell;
 }

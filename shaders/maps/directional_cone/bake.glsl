@@ -60,8 +60,8 @@ float directional_cone_folded(ivec2 cell, Sector sector, int channel) {
 // With mirror, the flat cells between two copies of texel 0 are not in the map. The windows of their neighbours cover theirs.
 bool directional_cone_is_absent(ivec2 cell) {
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR
-  ivec2 period = 2 * relievo_bake_extent();
-  return relievo_modulo(cell.x + 1, period.x) == 0 || relievo_modulo(cell.y + 1, period.y) == 0;
+  vec2 phase = relievo_fold_to_first_period(vec2(cell + 1), vec2(relievo_bake_extent()));
+  return phase.x == 0.0 || phase.y == 0.0;
 #else
   return false;
 #endif

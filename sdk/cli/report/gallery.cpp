@@ -6,6 +6,7 @@
 
 #include "report/html.hpp"
 #include "report/page.hpp"
+#include "report/thumbnail.hpp"
 
 namespace relievo::cli {
 
@@ -63,39 +64,48 @@ std::string figures(const ImageDifference& d) {
                      psnr, fixed(d.mask_iou, 4));
 }
 
-/// One picture; `title` is bold, `text` follows.
+/// One picture, small, leading to the file in the folder beside the page; `title` is bold, `text` follows.
 Result<std::string> figure(const Report& report, const std::string& file, const std::string& title,
                            const std::string& text) {
-  Result<std::string> uri = png_uri(report.pictures / file);
+  Result<std::string> uri = thumbnail_uri(report.pictures, file);
   if (!uri) return uri;
   return fmt::format(
-      "<figure><img loading=\"lazy\" alt=\"{}\" src=\"{}\"><figcaption><b>{}</b> {}</figcaption></figure>\n",
-      escape(title), *uri, escape(title), escape(text));
+      "<figure><a href=\"pictures/{}\"><img loading=\"lazy\" alt=\"{}\" src=\"{}\"></a><figcaption><b>{}</b> "
+      "{}</figcaption></figure>\n",
+      escape(file), escape(title), *uri, escape(title), escape(text));
+}
+
+/// Two backends' pictures are the same to the eye: one is shown.
+constexpr double same_percent = 99.9;  // of pixels, within 1/255
+
+bool shown(const Evaluation& evaluation, const PictureRow& p) {
+  const PictureAgreement* between = agreement(evaluation, p, true);
+  return !between || between->left == p.backend || between->difference.within_percent < same_percent;
 }
 
 std::string picture_text(const Evaluation& evaluation, const PictureRow& p) {
   std::string text = p.seconds >= 0 ? fixed(p.seconds * 1e3, 1) + " ms" : "";
   if (!p.repeatable) text += " changes from run to run";
   if (p.degenerate_triangles > 0) text += fmt::format(" {} triangles without area, drawn flat", p.degenerate_triangles);
-  const PictureAgreement* between = agreement(evaluation, p, true);
-  if (between && between->left != p.backend) {
-    text += fmt::format("{}against {}: {}", text.empty() ? "" : "; ", between->left, figures(between->difference));
+  if (const PictureAgreement* between = agreement(evaluation, p, true)) {
+    text += fmt::format("{}against {}: {}", text.empty() ? "" : "; ",
+                        between->left == p.backend ? between->right : between->left, figures(between->difference));
   }
   return text;
 }
 
-/// A technique's pictures, one a backend, then their differences from the reference.
+/// A technique's pictures, one a backend where they differ, then their differences from the reference.
 Result<std::string> technique_figures(const Report& report, const Rows& rows) {
   std::string html;
   for (const PictureRow* p : rows) {
-    if (p->file.empty()) continue;
+    if (p->file.empty() || !shown(report.evaluation, *p)) continue;
     Result<std::string> item = figure(report, p->file, p->backend, picture_text(report.evaluation, *p));
     if (!item) return item;
     html += *item;
   }
   for (const PictureRow* p : rows) {
     const PictureAgreement* a = agreement(report.evaluation, *p, false);
-    if (!a || p->difference_file.empty()) continue;
+    if (!a || p->difference_file.empty() || !shown(report.evaluation, *p)) continue;
     Result<std::string> item = figure(report, p->difference_file,
                                       fmt::format("{} − {}, ×8", p->backend, a->right == "vertex" ? "mesh" : a->right),
                                       figures(a->difference));
@@ -120,15 +130,17 @@ Result<std::string> stage_html(const Report& report, const Stage& stage) {
   std::string note = stage_note(report, stage);
   std::string html = fmt::format("<h3>Stage {}</h3>\n", escape(stage.name));
   if (!note.empty()) html += fmt::format("<p class=\"soft\">{}</p>\n", escape(note));
+  html += "<div class=\"pairs\">\n";
   for (const std::string& technique : stage.techniques) {
     Result<std::string> items = technique_figures(report, stage.pictures.at(technique));
     if (!items) return items;
     std::string title = technique.empty()       ? "displaces the mesh itself"
                         : technique == "oracle" ? "oracle: what it should be"
                                                 : technique;
-    html += fmt::format("<h4>{}</h4>\n<div class=\"pictures\">\n{}</div>\n", escape(title), *items);
+    html += fmt::format("<div class=\"pair\"><h4>{}</h4>\n<div class=\"pictures\">\n{}</div></div>\n", escape(title),
+                        *items);
   }
-  return html;
+  return html + "</div>\n";
 }
 
 }  // namespace

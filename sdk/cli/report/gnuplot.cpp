@@ -70,12 +70,22 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
     text.replace(at, from.size(), to);
 }
 
+void erase_between(std::string& text, const std::string& start, const std::string& end) {
+  for (std::size_t at = text.find(start); at != std::string::npos; at = text.find(start, at)) {
+    std::size_t last = text.find(end, at);
+    if (last == std::string::npos) return;
+    text.erase(at, last + end.size() - at);
+  }
+}
+
 /// The element alone, with identifiers that are unique in a page of several plots.
 std::string inline_svg(std::string text, const std::string& prefix) {
   std::size_t start = text.find("<svg"), end = text.rfind("</svg>");
   if (start == std::string::npos || end == std::string::npos) return {};
   text = text.substr(start, end + 6 - start);
-  for (const char* name : {"gpDot", "gpPt", "gnuplot_plot_"}) replace_all(text, name, prefix + name);
+  erase_between(text, "<title>", "</title>");  // of every curve, its number
+  replace_all(text, "\t", "");
+  for (const char* name : {"gpDot", "gpPt", "gnuplot_plot_", "gnuplot_canvas"}) replace_all(text, name, prefix + name);
   return text;
 }
 

@@ -30,6 +30,8 @@ th.n, td.n { text-align: right; }
 td.n { white-space: nowrap; }
 td.name { white-space: nowrap; }
 .pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 1rem; margin: .4rem 0 1.2rem; }
+.pairs { display: grid; grid-template-columns: repeat(auto-fill, minmax(400px, 1fr)); gap: .4rem 1.4rem; }
+.pairs .pictures { grid-template-columns: 1fr 1fr; margin: 0 0 .6rem; gap: .6rem; }
 figure { margin: 0; }
 figure img { display: block; width: 100%; height: auto; background: #101316; border-radius: 3px; }
 figcaption { font-size: .8rem; line-height: 1.4; margin-top: .3rem; font-variant-numeric: tabular-nums; }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
 #include "report/gnuplot.hpp"
@@ -141,30 +140,29 @@ std::string legend(const Sweep& sweep) {
   for (const std::string& technique : techniques_of(sweep))
     entries += fmt::format(" NaN with linespoints {} title '{}',", style_of(index++, false), technique);
   return "unset logscale\nunset border\nunset tics\nunset xlabel\nunset ylabel\nunset grid\nunset title\nset key at "
-         "graph 0.5, graph 0.5 center center vertical maxrows 24 samplen 2 spacing 0.95\nset xrange [0:1]\nset yrange "
+         "graph 0.5, graph 0.5 center center vertical reverse Left maxrows 24 samplen 2 spacing 0.95\nset xrange "
+         "[0:1]\nset yrange "
          "[0:1]\nplot" +
          entries +
          " NaN with points linecolor rgb '#000000' linewidth 1.2 pointtype 6 pointsize 1.3 title 'not dominated'\n";
 }
 
-std::string identifier(const std::string& text) {
-  std::string result;
-  for (char c : text) result += std::isalnum(static_cast<unsigned char>(c)) ? c : 'x';
-  return result;
+/// "m3tw": short, since every point of a plot refers to its mark by it.
+std::string identifier(const Sweep& sweep, const std::string& map, const PlotKind& kind) {
+  auto at = std::find(sweep.maps.begin(), sweep.maps.end(), map);
+  return fmt::format("m{}{}", at - sweep.maps.begin(), kind.name);
 }
 
 }  // namespace
 
 const std::vector<PlotKind>& plot_kinds() {
   static const std::vector<PlotKind> kinds = {
-      {"timewrong", "Time against wrong hits", "time, as a ratio to the reference", "wrong hits, %", time_of,
-       wrong_lifted, false},
-      {"timeheight", "Time against the 99th percentile of |ΔH| of the hits that are right",
-       "time, as a ratio to the reference", "|ΔH|, 99th percentile", time_of, height_lifted, false},
-      {"fetcheswrong", "Texel reads against wrong hits", "texel reads a ray", "wrong hits, %", fetches_of, wrong_lifted,
+      {"tw", "Time against wrong hits", "time, as a ratio to the reference", "wrong hits, %", time_of, wrong_lifted,
        false},
-      {"stepswrong", "Wrong hits against steps, exact filter", "steps a ray", "wrong hits, %", steps_of, wrong_lifted,
-       true}};
+      {"th", "Time against the 99th percentile of |ΔH| of the hits that are right", "time, as a ratio to the reference",
+       "|ΔH|, 99th percentile", time_of, height_lifted, false},
+      {"fw", "Texel reads against wrong hits", "texel reads a ray", "wrong hits, %", fetches_of, wrong_lifted, false},
+      {"sw", "Wrong hits against steps, exact filter", "steps a ray", "wrong hits, %", steps_of, wrong_lifted, true}};
   return kinds;
 }
 
@@ -192,7 +190,7 @@ Plot draw_plot(const Sweep& sweep, const std::string& map, const PlotKind& kind,
     plot.problem = "the backend has no timestamps";
     return plot;
   }
-  Drawing drawing = run_gnuplot(script, identifier(map) + kind.name);
+  Drawing drawing = run_gnuplot(script, identifier(sweep, map, kind));
   plot.svg = std::move(drawing.svg);
   plot.problem = std::move(drawing.problem);
   return plot;

@@ -113,8 +113,13 @@ bool is_at_border(const HeightMap& map, int x, int y) {
 
 }  // namespace
 
-Status check_cones(const HeightMap& height_map, const MapData& map, int sectors, int reach,
-                   const CertifyOptions& options, Certificate& certificate) {
+Status check_cones(const HeightMap& height_map, const MapData& map, bool by_sector, const CertifyOptions& options,
+                   Certificate& certificate) {
+  const Result<double> farthest = baked_value(options, map.name, "reach");
+  if (!farthest) return tl::unexpected(farthest.error());
+  const Result<double> layers = by_sector ? baked_value(options, map.name, "sectors") : Result<double>(0.0);
+  if (!layers) return tl::unexpected(layers.error());
+  const int reach = static_cast<int>(*farthest), sectors = static_cast<int>(*layers);
   MapData expected;
   expected.width = height_map.width;
   expected.height = height_map.height;
@@ -137,11 +142,6 @@ Status check_cones(const HeightMap& height_map, const MapData& map, int sectors,
     }
   }
   return {};
-}
-
-int baked_with(const CertifyOptions& options, const std::string& name, int fallback) {
-  const auto found = options.values.find(name);
-  return found == options.values.end() ? fallback : static_cast<int>(found->second);
 }
 
 }  // namespace relievo::certifiers

@@ -6,8 +6,7 @@ namespace relievo::certifiers {
 namespace {
 
 Status check(const HeightMap& height_map, const MapData& map, const CertifyOptions& options, Certificate& certificate) {
-  return check_cones(height_map, map, baked_with(options, "directional_cone.sectors", 8),
-                     baked_with(options, "directional_cone.reach", 256), options, certificate);
+  return check_cones(height_map, map, true, options, certificate);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace relievo::certifiers {
 namespace {
 
 Status check(const HeightMap& height_map, const MapData& map, const CertifyOptions& options, Certificate& certificate) {
-  return check_cones(height_map, map, 0, baked_with(options, "robust_cone.reach", 256), options, certificate);
+  return check_cones(height_map, map, false, options, certificate);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ struct ReportOptions {
 };
 
 constexpr int synthetic_size = 256;  // texels a side of the height maps made by rule
+constexpr int quick_image = 64;      // rays a side
 
 /// A few counts at the two angles where techniques part: a look rather than a measurement.
 SweepPlan plan_of(const ReportOptions& options) {
@@ -30,7 +31,7 @@ SweepPlan plan_of(const ReportOptions& options) {
   plan.angles = {20, 8};
   plan.factors = {0.25, 1, 4};
   plan.budgets = {64};
-  plan.image = std::min(plan.image, 64);
+  plan.image = std::min(plan.image, quick_image);
   plan.repeats = std::min(plan.repeats, 2);
   return plan;
 }
@@ -67,17 +68,30 @@ Status prepare_folder(const std::filesystem::path& folder) {
               folder.string());
 }
 
+/// Compiling is most of what small pictures and few rays take: a quick report compiles less.
+EvaluationInput input_to_judge(EvaluationInput input, const ReportOptions& options, std::vector<NotRun>& not_run) {
+  if (input.ray_cases.size() > 1) input.ray_cases.resize(1);
+  if (!options.quick) return input;
+  for (RayCase& ray_case : input.ray_cases) ray_case.angles = plan_of(options).angles;
+  input.ray_image = std::min(input.ray_image, quick_image);
+  input.repeats = 1;
+  for (std::size_t i = 1; i < input.scenes.size(); ++i)
+    not_run.push_back({"pictures of scene " + input.scenes[i].first, "--quick draws the first scene only"});
+  if (input.scenes.size() > 1) input.scenes.resize(1);
+  return input;
+}
+
 /// The first height map is judged ray by ray together with the scenes; the sweep covers all of them.
 Result<Report> measure(EvaluationInput input, const ReportOptions& options, std::vector<NotRun> not_run) {
   Report report;
   report.techniques = input.techniques;
   report.pictures = input.pictures;
-  report.ray_image = input.ray_image;
-  report.repeats = input.repeats;
-  EvaluationInput judged = input;
-  if (judged.ray_cases.size() > 1) judged.ray_cases.resize(1);
+  EvaluationInput judged = input_to_judge(input, options, not_run);
+  report.ray_image = judged.ray_image;
+  report.repeats = judged.repeats;
   Result<Evaluation> evaluation = evaluate(judged);
   if (!evaluation) return tl::unexpected(evaluation.error());
+  evaluation->not_run.insert(evaluation->not_run.end(), not_run.begin(), not_run.end());
   report.evaluation = std::move(*evaluation);
   std::size_t files = input.ray_cases.size();
   if (!options.quick && files > 0) {
@@ -88,8 +102,6 @@ Result<Report> measure(EvaluationInput input, const ReportOptions& options, std:
   if (!sweep) return tl::unexpected(sweep.error());
   report.sweep = std::move(*sweep);
   report.plots = draw_plots(report.sweep, files);
-  std::vector<NotRun>& all = report.evaluation.not_run;
-  all.insert(all.end(), not_run.begin(), not_run.end());
   return report;
 }
 

@@ -118,7 +118,7 @@ TEST_F(ConformCli, FuzzingReportsAJobThatTakesTooLongAndEndsWhenItDoesNotComeBac
     return run_relievo({"conform", "--fuzz", "2000", "--techniques", "mine", "-I", (folder_ / "techniques").string(),
                         "--backends", "vulkan", "--patience", patience});
   };
-  const ChildResult slow = fuzz("0.3");
+  const ChildResult slow = fuzz("0.05");
   EXPECT_EQ(slow.exit_code, 4);
   const bool is_told = slow.out.find("s for 250 rays") != std::string::npos;
   EXPECT_TRUE(is_told || slow.err.find("does not come back") != std::string::npos) << slow.out << slow.err;

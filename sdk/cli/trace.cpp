@@ -30,6 +30,10 @@ Result<std::vector<Hit>> trace_on(const Context& context, const TraceOptions& op
   if (!registry) return tl::unexpected(registry.error());
   if (options.technique.empty())
     return fail(ErrorCode::usage, "trace.no-technique", "no technique is named; expected --technique NAME");
+  if (options.technique == "oracle") {
+    return fail(ErrorCode::usage, "trace.oracle",
+                "technique 'oracle' replays hits that it is given; for exact hits --backend oracle is expected");
+  }
   Result<Settings> settings = parse_settings(*registry, options.set, options.technique);
   if (!settings) return tl::unexpected(settings.error());
   Result<HeightFilter> filter = parse_height_filter(options.filter);

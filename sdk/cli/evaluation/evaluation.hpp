@@ -3,10 +3,12 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "common.hpp"
+#include "relievo/maps.hpp"
 #include "relievo/measure.hpp"
 
 namespace relievo::cli {
@@ -17,6 +19,15 @@ struct RayCase {
   HeightMap height;
   double scale = 0.1;                        ///< height of the lid in texture widths
   std::vector<double> angles = {60, 20, 8};  ///< degrees above the base plane
+};
+
+/// Baked maps, kept for all rays and pictures of one height map on one backend.
+class BakedMaps {
+ public:
+  MapSet& of(const HeightMap& height, const std::string& backend);
+
+ private:
+  std::map<std::string, MapSet> sets_;
 };
 
 struct EvaluationInput {
@@ -30,6 +41,7 @@ struct EvaluationInput {
   int repeats = 3;                                          ///< timed rounds, and runs that must be byte-identical
   bool time = true;
   std::filesystem::path pictures;  ///< folder for PNGs; empty = none are written
+  std::shared_ptr<BakedMaps> baked = std::make_shared<BakedMaps>();
 };
 
 /// One technique on one backend over the rays of a case at an angle.

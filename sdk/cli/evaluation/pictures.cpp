@@ -17,7 +17,7 @@ struct SceneRun {
   const std::string& scene_name;
   const LoadedScene& parts;
   Backend& backend;
-  MapSet maps;
+  MapSet& maps;
   Evaluation& evaluation;
 };
 
@@ -164,7 +164,7 @@ Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, E
   for (const auto& [name, parts] : input.scenes) {
     std::map<std::string, PicturesByCase> by_backend;
     for (auto& [backend_name, backend] : backends) {
-      SceneRun run{input, name, parts, *backend, map_set(parts.height), evaluation};
+      SceneRun run{input, name, parts, *backend, input.baked->of(parts.height, backend_name), evaluation};
       for (const auto& [stage_name, stage] : input.registry->stages) {
         if (stage.mesh == "none") continue;
         progress.advance(fmt::format("pictures {} {} {}", name, stage_name, backend_name));
@@ -205,7 +205,7 @@ Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Eva
     for (auto& [backend_name, backend] : backends) {
       if (!backend->info().features.contains("geometry")) continue;
       progress.advance(fmt::format("cracks {} {}", name, backend_name));
-      SceneRun run{input, name, parts, *backend, map_set(parts.height), evaluation};
+      SceneRun run{input, name, parts, *backend, input.baked->of(parts.height, backend_name), evaluation};
       Result<RenderResult> reference = draw(run, "vertex", "");
       if (!reference) return tl::unexpected(reference.error());
       for (const std::string& technique : input.techniques) {

@@ -46,7 +46,7 @@ struct RayRun {
 };
 
 Status run_backend(const RayRun& run, Backend& backend, Evaluation& evaluation, std::vector<TraceResult>& counted) {
-  MapSet maps = map_set(run.ray_case.height);
+  MapSet& maps = run.input.baked->of(run.ray_case.height, backend.info().name);
   auto with_cost = requests(run.input, run.filter, run.ray_case.scale, true);
   Result<std::vector<TraceResult>> result =
       trace(backend, *run.input.registry, maps, run.rays, with_cost, 1, &evaluation.messages);

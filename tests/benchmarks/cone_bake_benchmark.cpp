@@ -41,7 +41,7 @@ BENCHMARK_CAPTURE(bake, robust_cone, std::string("robust_cone"))
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(bake, directional_cone, std::string("directional_cone"))
     ->RangeMultiplier(2)
-    ->Range(256, 2048)
+    ->Range(256, 1024)
     ->MeasureProcessCPUTime()
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);

@@ -87,6 +87,9 @@ class Progress {
 void add_list(CLI::App& app, Context& context);
 void add_describe(CLI::App& app, Context& context);
 void add_compile(CLI::App& app, Context& context);
+void add_permute(CLI::App& app, Context& context);
+void add_archive(CLI::App& app, Context& context);
+void add_cache(CLI::App& app, Context& context);
 void add_bake(CLI::App& app, Context& context);
 void add_certify(CLI::App& app, Context& context);
 void add_trace(CLI::App& app, Context& context);

@@ -41,8 +41,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("relievo ") + RELIEVO_VERSION);
   Context context;
-  for (auto add : {add_list, add_describe, add_compile, add_bake, add_certify, add_trace, add_render, add_bench,
-                   add_conform, add_report}) {
+  for (auto add : {add_list, add_describe, add_compile, add_permute, add_archive, add_cache, add_bake, add_certify,
+                   add_trace, add_render, add_bench, add_conform, add_report}) {
     add(app, context);
   }
   add_techniques_option(app, context);

@@ -49,6 +49,9 @@ struct ParameterSlot {
   double value = 0;
   int constant_id = -1;  ///< specialization
   int offset = -1;       ///< bytes in the Parameters block (set 0, binding 0, std140)
+  double default_value = 0;  ///< the descriptor's
+  bool is_loop = false;      ///< an iteration bound
+  std::vector<std::string> choices = {};  ///< of an axis: the names of the values 0, 1, …
 };
 
 struct MapSlot {
@@ -68,7 +71,7 @@ struct ComposedProgram {
 };
 
 /// Composes one permutation. Errors: unknown names (nearest one given), a role without a technique, a value out of
-/// range, a missing or escaping or self-including file ("compose.*").
+/// range, a rule of an axis that is broken, a missing or escaping or self-including file ("compose.*").
 Result<ComposedProgram> compose(const Registry& registry, const Permutation& permutation);
 
 /// Composes the compute program that bakes `map`; its parameters are keyed "map.parameter".

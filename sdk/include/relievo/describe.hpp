@@ -20,7 +20,38 @@ namespace relievo {
 enum class BindingTime { macro, specialization, uniform };
 std::string_view to_string(BindingTime time);
 
-/// A loop count or parameter. In GLSL it is the identifier `<owner>_<name>`.
+/// Shader-model features a descriptor can require.
+/// dynamic_loops, explicit_lod, texture_3d, gather, geometry, tessellation, compute, vertex_texture, depth_write
+using FeatureSet = std::set<std::string>;
+const FeatureSet& known_features();
+
+/// What one axis of a permutation is, or may be: "filter" is "exact"; "maps" has "normal" and "cone".
+struct Condition {
+  /// technique, stage, address, filter, aov, count, target, a parameter ("relief.linear_steps"); or maps, features.
+  std::string subject;
+  std::vector<std::string> words;
+};
+
+/// When every condition of `when` holds (the subject is one of its words), then `then` must: a subject with one value
+/// is one of its words, `maps` and `features` have them all. With `excludes`, it is, or has, none of them. What a
+/// permutation does not have, such as a parameter of a technique that is not bound, is never broken.
+struct Rule {
+  std::vector<Condition> when;
+  Condition then;
+  bool excludes = false;
+  std::string reason;  ///< the author's sentence; may be empty
+  std::string file;
+  int line = 0;
+};
+/// "surface.normal_source = height requires filter = exact".
+std::string to_string(const Rule& rule);
+
+/// What holds of a permutation, by subject; rules about a subject that is absent do not apply.
+using Facts = std::map<std::string, std::set<std::string>, std::less<>>;
+bool is_broken(const Rule& rule, const Facts& facts);
+
+/// A loop count or parameter. In GLSL it is the identifier `<owner>_<name>`. An axis is a parameter whose values have
+/// names: `value` is the index of one, and `<owner>_<name>_<value>` is that index in GLSL.
 struct Parameter {
   std::string name;
   std::string title;
@@ -29,9 +60,20 @@ struct Parameter {
   std::string unit;                            ///< "steps", "texels", "1", …
   double minimum = 0, maximum = 0, value = 0;  ///< range and default
   BindingTime binding = BindingTime::uniform;
+  std::vector<BindingTime> bindings;           ///< those that a caller may choose; empty: all
+  std::vector<std::string> choices;            ///< an axis: the names of its values
+  std::vector<std::vector<std::string>> maps;  ///< an axis: the maps that each value needs beside the owner's
+  std::vector<FeatureSet> features;            ///< an axis: the features that each value needs
+  std::vector<Rule> rules;                     ///< an axis: what its values require and exclude
   std::string file;
   int line = 0;  ///< where it was declared
 };
+
+/// A parameter's value from its text: a number, or the name of a choice. Errors: "describe.value" with what is
+/// expected.
+Result<double> parse_value(const Parameter& parameter, std::string_view text);
+/// The reverse: the name of the choice, or the number, shortest form.
+std::string value_text(const Parameter& parameter, double value);
 
 /// The survey's classes (§4): does it guarantee the first hit? `reference` is ours: not an algorithm but what others
 /// are judged by; sweeps over all techniques leave it out.
@@ -40,11 +82,6 @@ std::string_view to_string(TechniqueClass value);
 
 enum class FirstHit { never, if_steps_under_texel, always };
 std::string_view to_string(FirstHit value);
-
-/// Shader-model features a descriptor can require.
-/// dynamic_loops, explicit_lod, texture_3d, gather, geometry, tessellation, compute, vertex_texture, depth_write
-using FeatureSet = std::set<std::string>;
-const FeatureSet& known_features();
 
 struct TechniqueDescriptor {
   std::string name, title, source, summary;

@@ -11,6 +11,7 @@
 #include "compile/bindings.hpp"
 #include "compile/capabilities.hpp"
 #include "compile/emit.hpp"
+#include "compile/emit_program.hpp"
 #include "compile/front_end.hpp"
 #include "compile/interface.hpp"
 #include "compile/lint.hpp"
@@ -48,27 +49,32 @@ Status validate_pipeline(const SpirvWords& before, const SpirvWords& after, std:
   return shipped;
 }
 
-/// One shader from the front end's SPIR-V to what ships: linted, optimized, parsed.
-Result<ShaderModule> finish_module(ShaderStage stage, const SpirvWords& front_end_words, const CompileOptions& options,
-                                   std::string_view key) {
+/// One shader from the front end's SPIR-V to what ships: linted, optimized.
+Result<SpirvWords> finish_words(const SpirvWords& front_end_words, const CompileOptions& options,
+                                std::string_view key) {
   if (auto ok = lint_implicit_lod_in_loop(front_end_words, key); !ok) return tl::unexpected(ok.error());
   SpirvWords plain = strip_lines(front_end_words);
-  Result<SpirvWords> words = options.optimize ? optimize_spirv(plain, key) : Result<SpirvWords>(std::move(plain));
-  if (!words) return tl::unexpected(words.error());
-  const SpirvWords shipped = options.validate ? *words : SpirvWords();
-  Result<ShaderModule> module = parse_module(stage, *std::move(words), key);
+  return options.optimize ? optimize_spirv(plain, key) : Result<SpirvWords>(std::move(plain));
+}
+
+/// What cannot be read is explained best by what is wrong with it.
+Result<ShaderModule> parse_shipped(ShaderStage stage, SpirvWords words, std::span<const SpirvWords> explanation,
+                                   const CompileOptions& options, std::string_view key) {
+  const SpirvWords shipped = options.validate ? words : SpirvWords();
+  Result<ShaderModule> module = parse_module(stage, std::move(words), key);
   if (module || !options.validate) return module;
-  // What cannot be read is explained best by what is wrong with it.
-  if (auto ok = validate_pipeline(front_end_words, shipped, key); !ok) return tl::unexpected(ok.error());
+  if (auto ok = validate_pipeline(explanation.empty() ? shipped : explanation.front(), shipped, key); !ok)
+    return tl::unexpected(ok.error());
   return module;
 }
 
-Result<std::vector<ShaderModule>> make_modules(const ComposedProgram& program,
-                                               std::span<const SpirvWords> front_end_words,
-                                               const CompileOptions& options) {
+Result<std::vector<ShaderModule>> parse_modules(const ComposedProgram& program, std::vector<SpirvWords> words,
+                                                std::span<const SpirvWords> front_end_words,
+                                                const CompileOptions& options) {
   std::vector<std::optional<Result<ShaderModule>>> results(program.shaders.size());
   run_parallel(results.size(), options.threads, [&](std::size_t i) {
-    results[i] = finish_module(program.shaders[i].stage, front_end_words[i], options, program.key);
+    const auto explanation = front_end_words.empty() ? front_end_words : front_end_words.subspan(i, 1);
+    results[i] = parse_shipped(program.shaders[i].stage, std::move(words[i]), explanation, options, program.key);
   });
   std::vector<ShaderModule> modules;
   for (auto& result : results) {
@@ -122,8 +128,10 @@ Outputs make_outputs(const ComposedProgram& program, std::span<const SpirvWords>
       });
     }
     if (!options.validate) continue;
-    tasks.emplace_back(
-        [&, i] { outputs.valid[i] = validate_pipeline(front_end_words[i], modules[i].spirv, program.key); });
+    tasks.emplace_back([&, i] {
+      const SpirvWords& before = front_end_words.empty() ? modules[i].spirv : front_end_words[i];
+      outputs.valid[i] = validate_pipeline(before, modules[i].spirv, program.key);
+    });
   }
   tasks.emplace_back([&] { outputs.reflection = make_reflection(program, modules, layout, targets); });
   run_parallel(tasks.size(), options.threads, [&](std::size_t task) { tasks[task](); });
@@ -164,22 +172,44 @@ CompiledProgram collect(const ComposedProgram& program, std::span<const Target> 
   return compiled;
 }
 
+Result<std::vector<SpirvWords>> finish_all(std::span<const SpirvWords> front_end_words, const CompileOptions& options,
+                                           std::string_view key) {
+  std::vector<std::optional<Result<SpirvWords>>> results(front_end_words.size());
+  run_parallel(results.size(), options.threads,
+               [&](std::size_t i) { results[i] = finish_words(front_end_words[i], options, key); });
+  std::vector<SpirvWords> words;
+  for (auto& result : results) {
+    if (!*result) return tl::unexpected(result->error());
+    words.push_back(*std::move(*result));
+  }
+  return words;
+}
+
 Result<CompiledProgram> run_pipeline(const ComposedProgram& program, std::span<const Target> targets,
                                      const CompileOptions& options, std::string_view fallback_stage) {
   if (auto ok = check_request(program, targets, fallback_stage); !ok) return tl::unexpected(ok.error());
-  Result<std::vector<SpirvWords>> words = run_front_end(program, options.threads);
+  Result<std::vector<SpirvWords>> front_end_words = run_front_end(program, options.threads);
+  if (!front_end_words) return tl::unexpected(front_end_words.error());
+  Result<std::vector<SpirvWords>> words = finish_all(*front_end_words, options, program.key);
   if (!words) return tl::unexpected(words.error());
-  Result<std::vector<ShaderModule>> modules = make_modules(program, *words, options);
-  if (!modules) return tl::unexpected(modules.error());
-  if (auto ok = check_modules(*modules, program, targets, fallback_stage); !ok) return tl::unexpected(ok.error());
-  Result<BindingLayout> layout = make_binding_layout(*modules, program.key);
-  if (!layout) return tl::unexpected(layout.error());
-  Outputs outputs = make_outputs(program, *words, *modules, *layout, targets, options);
-  if (auto ok = check_outputs(outputs); !ok) return tl::unexpected(ok.error());
-  return collect(program, targets, *layout, *std::move(modules), std::move(outputs));
+  return emit_program(program, *std::move(words), targets, options, fallback_stage, *front_end_words);
 }
 
 }  // namespace
+
+Result<CompiledProgram> emit_program(const ComposedProgram& program, std::vector<SpirvWords> words,
+                                     std::span<const Target> targets, const CompileOptions& options,
+                                     std::string_view fallback_stage, std::span<const SpirvWords> front_end_words) {
+  Result<std::vector<ShaderModule>> modules = parse_modules(program, std::move(words), front_end_words, options);
+  if (!modules) return tl::unexpected(modules.error());
+  if (auto ok = check_modules(*modules, program, targets, fallback_stage); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_interfaces(*modules, program.key); !ok) return tl::unexpected(ok.error());
+  Result<BindingLayout> layout = make_binding_layout(*modules, program.key);
+  if (!layout) return tl::unexpected(layout.error());
+  Outputs outputs = make_outputs(program, front_end_words, *modules, *layout, targets, options);
+  if (auto ok = check_outputs(outputs); !ok) return tl::unexpected(ok.error());
+  return collect(program, targets, *layout, *std::move(modules), std::move(outputs));
+}
 
 Result<CompiledProgram> compile(const ComposedProgram& program, std::span<const Target> targets,
                                 const CompileOptions& options, std::string_view fallback_stage) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cctype>
 #include <charconv>
 #include <optional>
 
@@ -95,6 +96,68 @@ Error glsl_error(std::string_view log, std::string_view permutation_key) {
     }
   }
   return error;
+}
+
+namespace {
+
+/// The file and line that `#line 12 "file"` gives to the text after it.
+struct LineMark {
+  std::string_view file;
+  int line = 0;
+};
+
+std::optional<LineMark> line_mark(std::string_view text) {
+  constexpr std::string_view kLine = "#line ";
+  if (text.substr(0, kLine.size()) != kLine) return std::nullopt;
+  text.remove_prefix(kLine.size());
+  LineMark mark;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), mark.line);
+  const std::size_t open = text.find('"'), close = text.rfind('"');
+  if (fault != std::errc() || open == close) return std::nullopt;
+  mark.file = text.substr(open + 1, close - open - 1);
+  return mark;
+}
+
+bool is_identifier_part(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+/// 1-based; 0: not there as a word of its own.
+int column_of(std::string_view line, std::string_view token) {
+  for (std::size_t at = line.find(token); at != line.npos; at = line.find(token, at + 1)) {
+    const std::size_t end = at + token.size();
+    const bool glued_before = at > 0 && is_identifier_part(line[at - 1]) && is_identifier_part(token.front());
+    const bool glued_after = end < line.size() && is_identifier_part(line[end]) && is_identifier_part(token.back());
+    if (!glued_before && !glued_after) return static_cast<int>(at) + 1;
+  }
+  return 0;
+}
+
+/// The token that glslang quotes: "'token' : what is wrong".
+std::string_view quoted_token(std::string_view message) {
+  const std::size_t open = message.find('\'');
+  const std::size_t close = open == message.npos ? open : message.find('\'', open + 1);
+  return close == message.npos ? std::string_view() : message.substr(open + 1, close - open - 1);
+}
+
+}  // namespace
+
+int find_column(std::string_view text, const Error& error) {
+  const std::string_view token = quoted_token(error.message);
+  if (token.empty() || error.line == 0) return 0;
+  LineMark place;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (const std::optional<LineMark> mark = line_mark(line)) {
+      place = *mark;
+      continue;
+    }
+    if (place.line == error.line && place.file == error.file) return column_of(line, token);
+    ++place.line;
+  }
+  return 0;
 }
 
 }  // namespace relievo

@@ -91,11 +91,15 @@ tl::unexpected<Error> too_complex(const ComposedShader& source, std::string_view
 }
 
 /// Parses every shader; the first error in their order is the one reported.
-Status parse_all(std::span<const std::unique_ptr<ParsedShader>> shaders, unsigned threads, std::string_view key) {
+Status parse_all(std::span<const std::unique_ptr<ParsedShader>> shaders, unsigned threads,
+                 const ComposedProgram& program) {
   std::vector<char> parsed(shaders.size());
   run_parallel(shaders.size(), threads, [&](std::size_t i) { parsed[i] = shaders[i]->parse(); });
   for (std::size_t i = 0; i < shaders.size(); ++i) {
-    if (!parsed[i]) return tl::unexpected(glsl_error(shaders[i]->shader().getInfoLog(), key));
+    if (parsed[i]) continue;
+    Error error = glsl_error(shaders[i]->shader().getInfoLog(), program.key);
+    error.column = find_column(program.shaders[i].text, error);
+    return tl::unexpected(std::move(error));
   }
   return {};
 }
@@ -114,7 +118,7 @@ Result<std::vector<SpirvWords>> run_front_end(const ComposedProgram& program, un
     shaders.push_back(std::make_unique<ParsedShader>(source));
     linked.addShader(&shaders.back()->shader());
   }
-  if (auto ok = parse_all(shaders, threads, program.key); !ok) return tl::unexpected(ok.error());
+  if (auto ok = parse_all(shaders, threads, program); !ok) return tl::unexpected(ok.error());
   if (!linked.link(kMessages)) return tl::unexpected(glsl_error(linked.getInfoLog(), program.key));
 
   std::vector<SpirvWords> modules(shaders.size());

@@ -60,16 +60,65 @@ std::set<int> unread_outputs(const ShaderModule& producer, const ShaderModule& c
   return unread;
 }
 
+/// The stage after, or null.
+const ShaderModule* next_stage(std::span<const ShaderModule> modules, const ShaderModule& module) {
+  const ShaderModule* next = nullptr;
+  for (const ShaderModule& other : modules) {
+    if (other.stage <= module.stage) continue;
+    if (next == nullptr || other.stage < next->stage) next = &other;
+  }
+  return next;
+}
+
+/// A varying's type without the array over the vertices that some stages see.
+struct VaryingType {
+  spirv_cross::SPIRType::BaseType base = spirv_cross::SPIRType::Unknown;
+  std::uint32_t components = 0, columns = 0;
+  friend bool operator==(const VaryingType&, const VaryingType&) = default;
+};
+
+VaryingType type_of(const ShaderModule& module, const Resource& varying) {
+  const auto& type = module.reflection->get_type(varying.base_type_id);
+  return {type.basetype, type.vecsize, type.columns};
+}
+
+Status check_interface(const ShaderModule& producer, const ShaderModule& consumer, std::string_view key) {
+  for (const Resource& input : consumer.resources.stage_inputs) {
+    const int location = location_of(*consumer.reflection, input);
+    const auto& outputs = producer.resources.stage_outputs;
+    const auto output = std::find_if(outputs.begin(), outputs.end(), [&](const Resource& candidate) {
+      return location_of(*producer.reflection, candidate) == location;
+    });
+    const bool is_block = type_of(consumer, input).base == spirv_cross::SPIRType::Struct;
+    if (is_block || (output != outputs.end() && type_of(producer, *output) == type_of(consumer, input))) continue;
+    // Arrays and matrices take the locations after their own as well.
+    const bool may_be_within = std::any_of(outputs.begin(), outputs.end(), [&](const Resource& candidate) {
+      return !takes_one_location(producer, candidate) && location_of(*producer.reflection, candidate) < location;
+    });
+    if (output == outputs.end() && may_be_within) continue;
+    return fail(ErrorCode::compile, "compile.interface",
+                fmt::format("the {} shader reads '{}' at location {}, which the {} shader {} (permutation '{}')",
+                            to_string(consumer.stage), input.name, location, to_string(producer.stage),
+                            output == outputs.end() ? "does not write" : "writes with another type", key));
+  }
+  return {};
+}
+
 }  // namespace
+
+Status check_interfaces(std::span<const ShaderModule> modules, std::string_view permutation_key) {
+  for (const ShaderModule& module : modules) {
+    const ShaderModule* next = next_stage(modules, module);
+    if (next == nullptr) continue;
+    if (Status status = check_interface(module, *next, permutation_key); !status) return status;
+  }
+  return {};
+}
 
 std::vector<StageNeighbours> find_neighbours(std::span<const ShaderModule> modules) {
   std::vector<StageNeighbours> all(modules.size());
   for (std::size_t i = 0; i < modules.size(); ++i) {
-    const ShaderModule* next = nullptr;
-    for (std::size_t k = 0; k < modules.size(); ++k) {
-      if (modules[k].stage <= modules[i].stage) continue;
-      if (next == nullptr || modules[k].stage < next->stage) next = &modules[k];
-    }
+    const ShaderModule* next = next_stage(modules, modules[i]);
     if (next == nullptr) continue;
     all[i].consumer = next->stage;
     all[i].unread_outputs = unread_outputs(modules[i], *next);

@@ -17,6 +17,9 @@ struct StageNeighbours {
   std::set<int> unread_outputs;         ///< locations that this stage writes and the consumer does not read
 };
 
+/// Every input of a stage is an output of the stage before, of the same type. Error: "compile.interface", naming both.
+Status check_interfaces(std::span<const ShaderModule> modules, std::string_view permutation_key);
+
 /// One entry a module, in order. Stages follow each other as in `ShaderStage`.
 std::vector<StageNeighbours> find_neighbours(std::span<const ShaderModule> modules);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <spirv_cross/spirv.hpp>
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
 
@@ -22,8 +23,10 @@ spvtools::MessageConsumer collect_into(std::string& messages) {
 /// Removes what a permutation does not use and what is decided at compile time. Functions stay functions: drivers
 /// inline by themselves, and the emitted text keeps the author's structure, at a third of the size and time. Nothing
 /// rewrites arithmetic: contracting a·b+c into fma would let targets disagree about a hit. Blocks are not merged: a
-/// loop's step in a block of its own is what lets the emitters write `for (…; ++i)`.
-void register_passes(spvtools::Optimizer& optimizer) {
+/// loop's step in a block of its own is what lets the emitters write `for (…; ++i)`. Operations on specialization
+/// constants are folded where all of those are frozen.
+void register_passes(spvtools::Optimizer& optimizer, bool has_constant_operations) {
+  if (has_constant_operations) optimizer.RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
   optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
       .RegisterPass(spvtools::CreateDeadBranchElimPass())
       .RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
@@ -31,6 +34,14 @@ void register_passes(spvtools::Optimizer& optimizer) {
       .RegisterPass(spvtools::CreateCCPPass())
       .RegisterPass(spvtools::CreateDeadBranchElimPass())
       .RegisterPass(spvtools::CreateAggressiveDCEPass());
+}
+
+bool has_constant_operations(const SpirvWords& words) {
+  bool found = false;
+  for_each_instruction(words, [&](const SpirvInstruction& instruction) {
+    found = found || instruction.opcode == spv::OpSpecConstantOp || instruction.opcode == spv::OpSpecConstantComposite;
+  });
+  return found;
 }
 
 tl::unexpected<Error> invalid(std::string_view key, std::string_view when, const std::string& messages) {
@@ -54,7 +65,7 @@ Result<SpirvWords> optimize_spirv(const SpirvWords& words, std::string_view perm
   std::string messages;
   spvtools::Optimizer optimizer(kEnvironment);
   optimizer.SetMessageConsumer(collect_into(messages));
-  register_passes(optimizer);
+  register_passes(optimizer, has_constant_operations(words));
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);  // the pipeline validates before and after
   SpirvWords optimized;

@@ -4,81 +4,15 @@
 #include <algorithm>
 
 #include "compose/include.hpp"
-#include "compose/parameters.hpp"
+#include "compose/resolve.hpp"
 
 namespace relievo {
 
 namespace {
 
-/// What one permutation is made of, after all names are resolved.
-struct Parts {
-  const StageDescriptor* stage = nullptr;
-  std::map<std::string, const TechniqueDescriptor*> roles;
-  std::vector<const TechniqueDescriptor*> techniques;  // without repetition
-  std::vector<const MapDescriptor*> maps;              // by set and binding
-};
-
 template <class T>
 void add_once(std::vector<T>& list, T value) {
   if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
-}
-
-Status add_maps(const Registry& registry, const std::vector<std::string>& names,
-                std::vector<const MapDescriptor*>& maps) {
-  for (const std::string& name : names) {
-    Result<const MapDescriptor*> map = registry.map(name);
-    if (!map) return tl::unexpected(map.error());
-    add_once(maps, *map);
-  }
-  return {};
-}
-
-void sort_by_binding(std::vector<const MapDescriptor*>& maps) {
-  std::sort(maps.begin(), maps.end(), [](const MapDescriptor* a, const MapDescriptor* b) {
-    return std::pair(a->set, a->binding) < std::pair(b->set, b->binding);
-  });
-}
-
-Status add_role(const Registry& registry, const Permutation& permutation, const std::string& role, Parts& parts) {
-  auto bound = permutation.roles.find(role);
-  if (bound == permutation.roles.end()) {
-    return fail(ErrorCode::usage, "compose.role-missing",
-                fmt::format("stage '{}' calls the role '{}', which no technique is bound to", permutation.stage, role));
-  }
-  Result<const TechniqueDescriptor*> technique = registry.technique(bound->second);
-  if (!technique) return tl::unexpected(technique.error());
-  parts.roles[role] = *technique;
-  add_once(parts.techniques, *technique);
-  return add_maps(registry, (*technique)->maps, parts.maps);
-}
-
-Result<Parts> resolve(const Registry& registry, const Permutation& permutation) {
-  Parts parts;
-  Result<const StageDescriptor*> stage = registry.stage(permutation.stage);
-  if (!stage) return tl::unexpected(stage.error());
-  parts.stage = *stage;
-  if (Status status = add_maps(registry, (*stage)->maps, parts.maps); !status) return tl::unexpected(status.error());
-  for (const std::string& role : (*stage)->roles) {
-    if (Status status = add_role(registry, permutation, role, parts); !status) return tl::unexpected(status.error());
-  }
-  for (const auto& [role, technique] : permutation.roles) {
-    if (parts.roles.contains(role)) continue;
-    return fail(ErrorCode::usage, "compose.role-unknown",
-                fmt::format("stage '{}' has no role '{}'; expected {}", permutation.stage, role,
-                            (*stage)->roles.empty() ? "none: it traces nothing"
-                                                    : fmt::format("{}", fmt::join((*stage)->roles, ", "))));
-  }
-  sort_by_binding(parts.maps);
-  return parts;
-}
-
-std::vector<ParameterOwner> owners_of(const Parts& parts) {
-  std::vector<ParameterOwner> owners;
-  if (parts.stage) owners.push_back({parts.stage->name, &parts.stage->parameters});
-  for (const TechniqueDescriptor* technique : parts.techniques)
-    owners.push_back({technique->name, &technique->parameters});
-  for (const MapDescriptor* map : parts.maps) owners.push_back({map->name, &map->parameters});
-  return owners;
 }
 
 /// Numbers that modules may ask for by name; defined for every shader, in one place.
@@ -152,35 +86,38 @@ Result<ComposedShader> compose_shader(const Registry& registry, const Parts& all
   return ComposedShader{shader.stage, std::move(text), expander.files()};
 }
 
-FeatureSet features_of(const Parts& parts) {
-  FeatureSet features = parts.stage->features;
-  for (const TechniqueDescriptor* technique : parts.techniques) {
-    features.insert(technique->features.begin(), technique->features.end());
-  }
-  return features;
+Status check_rules(const Parts& parts, const Permutation& permutation) {
+  const Rule* broken = broken_rule(parts, facts_of(parts, permutation));
+  if (!broken) return {};
+  return fail(ErrorCode::usage, "compose.rule",
+              fmt::format("permutation '{}' breaks a rule of its axes: {}", permutation.key(), to_string(*broken)),
+              broken->file, broken->line);
 }
 
 }  // namespace
 
 Result<ComposedProgram> compose(const Registry& registry, const Permutation& permutation) {
-  Result<Parts> parts = resolve(registry, permutation);
+  const Result<Parts> parts = resolve(registry, permutation);
   if (!parts) return tl::unexpected(parts.error());
-  Result<std::vector<ParameterSlot>> slots =
-      assign_parameters(owners_of(*parts), permutation.values, permutation.binding_times);
-  if (!slots) return tl::unexpected(slots.error());
+  if (Status status = check_rules(*parts, permutation); !status) return tl::unexpected(status.error());
+  return compose_parts(registry, permutation, *parts);
+}
+
+Result<ComposedProgram> compose_parts(const Registry& registry, const Permutation& permutation, const Parts& parts) {
+  const std::vector<ParameterSlot>& slots = parts.parameters;
 
   ComposedProgram program;
   program.key = permutation.key();
   program.stage = permutation.stage;
-  program.parameters = *slots;
-  program.parameter_block_size = parameter_block_size(*slots);
-  program.features = features_of(*parts);
-  for (const MapDescriptor* map : parts->maps)
+  program.parameters = slots;
+  program.parameter_block_size = parameter_block_size(slots);
+  program.features = features_of(parts);
+  for (const MapDescriptor* map : parts.maps)
     program.maps.push_back({map->name, map->sampler, map->set, map->binding});
   bool count = permutation.count_cost || permutation.aov == Aov::steps;
   std::string macros = axis_macros(permutation.filter, permutation.address, count, permutation.aov);
-  for (const StageShader& shader : parts->stage->shaders) {
-    Result<ComposedShader> composed = compose_shader(registry, *parts, shader, macros, *slots);
+  for (const StageShader& shader : parts.stage->shaders) {
+    Result<ComposedShader> composed = compose_shader(registry, parts, shader, macros, slots);
     if (!composed) return tl::unexpected(composed.error());
     program.shaders.push_back(std::move(*composed));
   }

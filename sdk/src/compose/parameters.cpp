@@ -32,6 +32,16 @@ Status check_value(const std::string& name, const Parameter& parameter, double v
   return {};
 }
 
+Status check_binding(const ParameterSlot& slot, const Parameter& parameter) {
+  const std::vector<BindingTime>& allowed = parameter.bindings;
+  if (allowed.empty() || std::find(allowed.begin(), allowed.end(), slot.binding) != allowed.end()) return {};
+  std::vector<std::string_view> names;
+  for (const BindingTime time : allowed) names.push_back(to_string(time));
+  return fail(ErrorCode::usage, "compose.binding",
+              fmt::format("{} is bound as {}; expected {}", slot.name, to_string(slot.binding),
+                          fmt::join(names, " or ")));
+}
+
 template <class T>
 Status check_known(const std::map<std::string, T>& given, const std::vector<ParameterSlot>& slots) {
   for (const auto& [name, value] : given) {
@@ -58,7 +68,11 @@ Result<std::vector<ParameterSlot>> assign_parameters(const std::vector<Parameter
   for (const ParameterOwner& owner : owners) {
     for (const Parameter& parameter : *owner.parameters) {
       ParameterSlot slot{owner.name + "." + parameter.name, parameter.is_integer, parameter.binding, parameter.value};
+      slot.default_value = parameter.value;
+      slot.is_loop = parameter.is_loop;
+      slot.choices = parameter.choices;
       if (auto time = times.find(slot.name); time != times.end()) slot.binding = time->second;
+      if (Status status = check_binding(slot, parameter); !status) return tl::unexpected(status.error());
       if (auto value = values.find(slot.name); value != values.end()) slot.value = value->second;
       if (Status status = check_value(slot.name, parameter, slot.value); !status) return tl::unexpected(status.error());
       if (slot.binding == BindingTime::specialization) slot.constant_id = next_constant++;
@@ -86,6 +100,8 @@ std::string declare_parameters(const std::vector<ParameterSlot>& slots) {
   for (const ParameterSlot& slot : slots) {
     const char* type = slot.is_integer ? "int" : "float";
     std::string name = identifier(slot.name);
+    for (std::size_t i = 0; i < slot.choices.size(); ++i)
+      constants += fmt::format("#define {}_{} {}\n", name, slot.choices[i], i);
     switch (slot.binding) {
       case BindingTime::macro:
         constants += fmt::format("#define {} {}\n", name, slot.value < 0 ? "(" + literal(slot) + ")" : literal(slot));

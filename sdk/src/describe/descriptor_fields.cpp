@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 
+#include "describe/axis.hpp"
 #include "describe/source_path.hpp"
 
 namespace relievo {
@@ -69,6 +70,22 @@ Parameter read_parameter(TomlReader& table, const std::string& name) {
   return parameter;
 }
 
+Parameter read_one_axis(TomlReader& table, const std::string& name, const std::string& owner) {
+  table.allow_keys({"title", "values", "default", "binding", "bindings", "maps", "features", "rule"});
+  Parameter axis = read_shared(table, name);
+  read_axis(table, owner, axis);
+  return axis;
+}
+
+/// A name that a loop, a parameter or an axis before it has already.
+void check_unused(TomlReader& table, const std::vector<Parameter>& parameters, const std::string& name) {
+  const auto same = [&](const Parameter& parameter) { return parameter.name == name; };
+  if (std::none_of(parameters.begin(), parameters.end(), same)) return;
+  table.report(
+      "describe.duplicate",
+      fmt::format("the {} has the name of a loop or parameter; names are used once a descriptor", table.label()), "");
+}
+
 }  // namespace
 
 std::string_view to_string(BindingTime time) {
@@ -103,17 +120,16 @@ std::string read_name(TomlReader& descriptor) {
   return name;
 }
 
-std::vector<Parameter> read_parameters(TomlReader& descriptor) {
+std::vector<Parameter> read_parameters(TomlReader& descriptor, const std::string& owner) {
   std::vector<Parameter> parameters;
   for (auto& [name, table] : descriptor.named_tables("loops", "loop")) parameters.push_back(read_loop(table, name));
-  const std::size_t loops = parameters.size();
   for (auto& [name, table] : descriptor.named_tables("parameters", "parameter")) {
-    const auto same = [&, wanted = name](const Parameter& loop) { return loop.name == wanted; };
-    if (std::any_of(parameters.begin(), parameters.begin() + static_cast<std::ptrdiff_t>(loops), same)) {
-      table.report("describe.duplicate",
-                   fmt::format("the {} has the name of a loop; names are used once a descriptor", table.label()), "");
-    }
+    check_unused(table, parameters, name);
     parameters.push_back(read_parameter(table, name));
+  }
+  for (auto& [name, table] : descriptor.named_tables("axes", "axis")) {
+    check_unused(table, parameters, name);
+    parameters.push_back(read_one_axis(table, name, owner));
   }
   return parameters;
 }

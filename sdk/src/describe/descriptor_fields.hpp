@@ -19,8 +19,8 @@ void check_schema(TomlReader& descriptor);
 /// The required "name", which is also its folder's: a reader finds a thing by its name.
 std::string read_name(TomlReader& descriptor);
 
-/// [loops.*], then [parameters.*], in the file's order.
-std::vector<Parameter> read_parameters(TomlReader& descriptor);
+/// [loops.*], then [parameters.*], then [axes.*], in the file's order. `owner` is the descriptor's name.
+std::vector<Parameter> read_parameters(TomlReader& descriptor, const std::string& owner);
 
 FeatureSet read_features(TomlReader& descriptor);
 
@@ -41,7 +41,7 @@ Result<Descriptor> parse_descriptor(std::string_view text, const std::string& pa
   descriptor.title = reader.text("title");
   descriptor.source = reader.text_or("source", "");
   descriptor.summary = reader.text_or("summary", "");
-  descriptor.parameters = read_parameters(reader);
+  descriptor.parameters = read_parameters(reader, descriptor.name);
   if (errors.error) return tl::unexpected(*errors.error);
   return descriptor;
 }

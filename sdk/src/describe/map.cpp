@@ -86,9 +86,9 @@ void read_rounding(TomlReader& reader, MapDescriptor& map) {
 }
 
 void read_map(TomlReader& reader, MapDescriptor& map) {
-  reader.allow_keys({"schema",  "name",      "title",  "source",           "summary", "inputs",    "channels",
-                     "levels",  "dimension", "layers", "layers_parameter", "passes",  "rounding",  "sampler",
-                     "binding", "module",    "access", "features",         "loops",   "parameters"});
+  reader.allow_keys({"schema",  "name",      "title",  "source",           "summary", "inputs",     "channels",
+                     "levels",  "dimension", "layers", "layers_parameter", "passes",  "rounding",   "sampler",
+                     "binding", "module",    "access", "features",         "loops",   "parameters", "axes"});
   map.inputs = reader.names("inputs");
   map.channels = reader.integer("channels", 1, 4);
   map.levels = reader.choice_of<MapLevels>("levels", level_names, MapLevels::single);

@@ -61,11 +61,24 @@ Status check_maps_exist(const Registry& registry) {
                        file, key, wanted);
     }
   };
+  const auto check_axes = [&](const auto& descriptor, const std::string& owner) {
+    for (const Parameter& axis : descriptor.parameters) {
+      for (const auto& maps : axis.maps)
+        check(fmt::format("axis {} of the {}", quote(axis.name), owner), descriptor.file, maps, "maps");
+    }
+  };
   for (const auto& [name, technique] : registry.techniques) {
     check("technique " + quote(name), technique.file, technique.maps, "maps");
+    check_axes(technique, "technique " + quote(name));
   }
-  for (const auto& [name, stage] : registry.stages) check("stage " + quote(name), stage.file, stage.maps, "maps");
-  for (const auto& [name, map] : registry.maps) check("map " + quote(name), map.file, map.inputs, "inputs");
+  for (const auto& [name, stage] : registry.stages) {
+    check("stage " + quote(name), stage.file, stage.maps, "maps");
+    check_axes(stage, "stage " + quote(name));
+  }
+  for (const auto& [name, map] : registry.maps) {
+    check("map " + quote(name), map.file, map.inputs, "inputs");
+    check_axes(map, "map " + quote(name));
+  }
   return status;
 }
 

@@ -88,7 +88,7 @@ void read_mesh(TomlReader& reader, StageDescriptor& stage) {
 
 void read_stage(TomlReader& reader, StageDescriptor& stage) {
   reader.allow_keys({"schema", "name", "title", "source", "summary", "roles", "maps", "features", "fallback", "mesh",
-                     "shader", "loops", "parameters"});
+                     "shader", "loops", "parameters", "axes"});
   stage.roles = reader.names("roles");
   stage.maps = reader.names("maps");
   stage.features = read_features(reader);

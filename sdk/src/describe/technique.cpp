@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, 3> first_hit_names = {"never", "if_steps_
 
 void read_technique(TomlReader& reader, TechniqueDescriptor& technique) {
   reader.allow_keys({"schema", "name", "title", "source", "summary", "class", "first_hit", "module", "maps", "features",
-                     "loops", "parameters"});
+                     "loops", "parameters", "axes"});
   technique.technique_class = reader.choice_of<TechniqueClass>("class", class_names);
   technique.first_hit = reader.choice_of<FirstHit>("first_hit", first_hit_names);
   technique.module = reader.path("module");

@@ -150,6 +150,59 @@ std::vector<std::string> TomlReader::choices(std::string_view key, const std::ve
   });
 }
 
+namespace {
+
+/// As a user would type the value after `--set`; nothing for what is no single value.
+std::optional<std::string> word_of(const TomlValue& value) {
+  switch (value.kind) {
+    case TomlValue::Kind::string:
+      return value.string.empty() ? std::nullopt : std::optional(value.string);
+    case TomlValue::Kind::integer:
+      return fmt::format("{}", value.integer);
+    case TomlValue::Kind::floating:
+      return fmt::format("{}", value.floating);
+    case TomlValue::Kind::boolean:
+      return value.boolean ? "on" : "off";
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> TomlReader::words_of(const TomlEntry& entry) {
+  const bool is_list = entry.value.kind == TomlValue::Kind::array;
+  if (is_list && entry.value.items.empty()) report_type(entry, entry.value, "at least one word");
+  std::vector<std::string> words;
+  for (const TomlValue& item : is_list ? entry.value.items : std::vector<TomlValue>{entry.value}) {
+    const std::optional<std::string> word = word_of(item);
+    if (!word) {
+      report_type(entry, item, "a word, a number or a boolean, or several in an array");
+    } else if (std::find(words.begin(), words.end(), *word) != words.end()) {
+      report_at("describe.duplicate",
+                fmt::format("{} of the {} has {} twice; once is expected", quote(entry.key), label_, quote(*word)),
+                item);
+    } else {
+      words.push_back(*word);
+    }
+  }
+  return words;
+}
+
+std::vector<std::string> TomlReader::words(std::string_view key) {
+  const TomlEntry* entry = find_entry(table_, key);
+  return entry ? words_of(*entry) : std::vector<std::string>();
+}
+
+std::vector<std::pair<std::string, std::vector<std::string>>> TomlReader::word_lists(std::string_view key) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> lists;
+  const TomlEntry* entry = find_entry(table_, key);
+  if (!entry) return lists;
+  if (entry->value.kind != TomlValue::Kind::table) report_type(*entry, entry->value, "a table of words by name");
+  for (const TomlEntry& list : entry->value.entries) lists.emplace_back(list.key, words_of(list));
+  return lists;
+}
+
 double TomlReader::number(std::string_view key) {
   const TomlEntry* entry = require(key);
   if (!entry) return 0;
@@ -244,6 +297,10 @@ std::vector<std::pair<std::string, TomlReader>> TomlReader::named_tables(std::st
     result.emplace_back(named.key, TomlReader(named.value, fmt::format("{} {}", label, quote(named.key)), *errors_));
   }
   return result;
+}
+
+std::vector<TomlReader> TomlReader::table_list_or_none(std::string_view key) {
+  return has(key) ? table_list(key) : std::vector<TomlReader>();
 }
 
 std::vector<TomlReader> TomlReader::table_list(std::string_view key) {

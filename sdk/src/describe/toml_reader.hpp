@@ -48,6 +48,10 @@ class TomlReader {
   std::vector<std::string> names(std::string_view key);  ///< optional; valid names, each once
   /// Optional; each one of `known`, each once. Others are the error `id`.
   std::vector<std::string> choices(std::string_view key, const std::vector<std::string>& known, const std::string& id);
+  /// Optional; one word or several, of strings, numbers and booleans (`on`, `off`), each once, none empty.
+  std::vector<std::string> words(std::string_view key);
+  /// Optional: a table of such words, in the file's order.
+  std::vector<std::pair<std::string, std::vector<std::string>>> word_lists(std::string_view key);
   double number(std::string_view key);                          ///< required; integer or float, finite in 32 bits
   int integer(std::string_view key, int minimum, int maximum);  ///< required
 
@@ -71,6 +75,8 @@ class TomlReader {
   std::vector<std::pair<std::string, TomlReader>> named_tables(std::string_view key, std::string_view label);
   /// The tables of an array ([[shader]]), in order. Required, at least one.
   std::vector<TomlReader> table_list(std::string_view key);
+  /// The same; none when it is absent.
+  std::vector<TomlReader> table_list_or_none(std::string_view key);
 
   /// Reports an error of this table at the value of `key`, or at the table itself when it is absent.
   void report(std::string id, std::string message, std::string_view key);
@@ -86,6 +92,7 @@ class TomlReader {
   const TomlEntry* require(std::string_view key);
   std::vector<std::string> strings(std::string_view key, const std::function<Fault(const std::string&)>& fault_of);
   std::optional<std::string> string_of(const TomlEntry& entry);
+  std::vector<std::string> words_of(const TomlEntry& entry);
   void report_type(const TomlEntry& entry, const TomlValue& value, std::string_view expected);
   void report_at(std::string id, std::string message, const TomlValue& value);
 

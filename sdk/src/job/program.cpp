@@ -1,5 +1,7 @@
 #include "job/program.hpp"
 
+#include "compose/resolve.hpp"
+
 #include <algorithm>
 #include <cstring>
 
@@ -20,25 +22,37 @@ Result<PreparedProgram> prepare_composed(ComposedProgram composed, std::string_v
 
 namespace {
 
-bool owns(const Registry& registry, const Permutation& permutation, const std::string& key) {
-  std::string owner = key.substr(0, key.find('.'));
-  if (owner == permutation.stage) return true;
-  std::vector<std::string> maps;
-  if (auto stage = registry.stages.find(permutation.stage); stage != registry.stages.end()) maps = stage->second.maps;
-  for (const auto& [role, name] : permutation.roles) {
-    if (owner == name) return true;
-    auto technique = registry.techniques.find(name);
-    if (technique != registry.techniques.end()) {
-      maps.insert(maps.end(), technique->second.maps.begin(), technique->second.maps.end());
-    }
+/// The maps that a descriptor needs, whatever its axes say.
+template <class Descriptor>
+void add_all_maps(const Descriptor& descriptor, std::vector<std::string>& maps) {
+  maps.insert(maps.end(), descriptor.maps.begin(), descriptor.maps.end());
+  for (const Parameter& axis : descriptor.parameters) {
+    for (const auto& needed : axis.maps) maps.insert(maps.end(), needed.begin(), needed.end());
   }
-  return std::find(maps.begin(), maps.end(), owner) != maps.end();
+}
+
+/// Drops the values of parameters that the permutation does not have, given those of its axes that `kept` has.
+Status keep_values_of(const Registry& registry, const Permutation& kept, Permutation& permutation, bool axes_only) {
+  const Result<Parts> parts = resolve(registry, kept);
+  if (!parts) return tl::unexpected(parts.error());
+  std::erase_if(permutation.values, [&](const auto& entry) {
+    return std::none_of(parts->parameters.begin(), parts->parameters.end(), [&](const ParameterSlot& slot) {
+      return slot.name == entry.first && !(axes_only && slot.choices.empty());
+    });
+  });
+  return {};
 }
 
 }  // namespace
 
 Result<ComposedProgram> compose_known(const Registry& registry, Permutation permutation) {
-  std::erase_if(permutation.values, [&](const auto& entry) { return !owns(registry, permutation, entry.first); });
+  // Axes decide which maps there are, and so which parameters.
+  Permutation defaults = permutation;
+  defaults.values.clear();
+  Permutation axes = permutation;
+  if (Status status = keep_values_of(registry, defaults, axes, true); !status) return tl::unexpected(status.error());
+  if (Status status = keep_values_of(registry, axes, permutation, false); !status)
+    return tl::unexpected(status.error());
   return compose(registry, permutation);
 }
 
@@ -52,11 +66,12 @@ Result<std::vector<std::string>> required_maps(const Registry& registry, std::st
                                                std::string_view technique_name) {
   Result<const StageDescriptor*> stage = registry.stage(stage_name);
   if (!stage) return tl::unexpected(stage.error());
-  std::vector<std::string> maps = (*stage)->maps;
+  std::vector<std::string> maps;
+  add_all_maps(**stage, maps);
   if (technique_name.empty()) return maps;
   Result<const TechniqueDescriptor*> technique = registry.technique(technique_name);
   if (!technique) return tl::unexpected(technique.error());
-  maps.insert(maps.end(), (*technique)->maps.begin(), (*technique)->maps.end());
+  add_all_maps(**technique, maps);
   return maps;
 }
 

@@ -3,6 +3,7 @@
 // The distances to the four faces are linear, so along the view ray they change by (this fragment's - the eye's). Going
 // back from the fragment by the share q of the way to the eye, face k is met at q = distance_k / change_k; the nearest is
 // the entry. Texture coordinates are linear in the distances as well: no plane equation, no inverse.
+#define RELIEVO_NORMAL_FROM_HEIGHT (prism_normal_source == prism_normal_source_height)
 #include "shaders/lib/aov.glsl"
 
 layout(location = 0) in vec3 prism_position;

@@ -1,4 +1,5 @@
 // Traces the view ray of a fragment in the tangent frame of its triangle (survey Eq. 10 and 11).
+#define RELIEVO_NORMAL_FROM_HEIGHT (surface_normal_source == surface_normal_source_height)
 #include "shaders/lib/address.glsl"
 #include "shaders/lib/aov.glsl"
 #include "shaders/lib/tangent_frame.glsl"
@@ -11,7 +12,9 @@ layout(location = 4) flat in vec3 vertex_bitangent;
 
 void surface_write(Ray ray, Hit hit, vec3 position) {
   vec3 normal = relievo_mesostructure_normal(vertex_tangent, vertex_bitangent, vertex_extrusion, hit.point.xy);
+#if surface_depth_write == surface_depth_write_on
   gl_FragDepth = relievo_depth(position);
+#endif
   relievo_write(ray, hit, position, normal);
 }
 

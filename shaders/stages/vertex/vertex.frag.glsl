@@ -1,4 +1,5 @@
 // Shades the displaced mesh with the normals of the height map (survey Eq. 9).
+#define RELIEVO_NORMAL_FROM_HEIGHT (vertex_normal_source == vertex_normal_source_height)
 #include "shaders/lib/aov.glsl"
 
 layout(location = 0) in vec3 vertex_position;

@@ -68,27 +68,38 @@ constexpr std::uint16_t kNoValue = 0xffff;
 /// Thread-safe: `add_program` and `add_permutation`.
 class ArchiveWriter {
  public:
-  /// Errors: "archive.write" when the folder cannot be written; "archive.axes" for two axes or values of one name, or a
-  /// default that is none of the values.
+  /// Errors: "archive.write" when the folder cannot be written; "archive.axes" for two axes or values of one name, an
+  /// axis whose name is empty or has an '=', no or too many values, or a default that is none of them.
   static Result<ArchiveWriter> create(const std::filesystem::path& path, std::vector<ArchiveAxis> axes);
   ArchiveWriter(ArchiveWriter&&) noexcept;
   ArchiveWriter& operator=(ArchiveWriter&&) noexcept;
   ~ArchiveWriter();  ///< unfinished: removes the spool file, and leaves `path` as it was
 
-  /// Keeps a program's outputs; the number stands for it in `add_permutation`.
+  /// Keeps a program's outputs; the number stands for it in `add_permutation`, and is that of an equal program which
+  /// was added before. Errors: "archive.program" for outputs that are not in order, "archive.write".
   Result<std::uint32_t> add_program(const ProgramImage& program);
   /// `values`: an index (or kNoValue) an axis. `absent`: targets that it was asked for and cannot have, each with the
-  /// reason. Errors: "archive.values" for a wrong count or index, "archive.key-collision" when two permutations have
-  /// one key: the message names both.
+  /// reason. The same permutation may come again. Errors: "archive.values" for a wrong count or index, a program that
+  /// was not added, or a target with two reasons; "archive.conflict" when the permutation comes again with another
+  /// program or other absent targets; "archive.key-collision" when two permutations have one key: the message names
+  /// both.
   Status add_permutation(std::span<const std::uint16_t> values, std::uint32_t program,
                          std::span<const std::pair<Target, std::string>> absent = {});
-  /// Writes the archive and renames it to `path`. Errors: "archive.write".
+  /// Writes the archive and renames it to `path`; nothing can be added after it. Errors: "archive.write".
   Status finish();
 
  private:
   struct State;
   explicit ArchiveWriter(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
+};
+
+/// What an archive has of a program, without its bytes.
+struct ArchiveOutput {
+  ShaderStage stage = ShaderStage::compute;
+  Target target;
+  std::uint64_t size = 0;  ///< bytes
+  friend bool operator==(const ArchiveOutput&, const ArchiveOutput&) = default;
 };
 
 /// An archive that is mapped into memory. Everything is const and thread-safe; views live as long as the archive.
@@ -105,13 +116,14 @@ class Archive {
   Archive& operator=(Archive&&) noexcept;
   ~Archive();
 
-  /// A permutation in the archive; cheap to copy.
+  /// A permutation in the archive, below `size()`; they are sorted by their values. Of any other number what follows
+  /// is empty, or the error "archive.entry".
   using Entry = std::uint32_t;
 
   std::size_t size() const;           ///< permutations
   std::size_t program_count() const;  ///< different programs
   const std::vector<ArchiveAxis>& axes() const;
-  const std::vector<Target>& targets() const;
+  const std::vector<Target>& targets() const;  ///< in order; of every output, and absent ones
 
   /// The key of an assignment; axes that are left out are at their default. Allocates nothing. An axis or value that
   /// the archive does not know adds its `axis_key`, so that it is found missing.
@@ -131,6 +143,9 @@ class Archive {
   /// and targets that there are, or with the reason why this target has none; "archive.damaged".
   Result<std::string_view> output(Entry entry, ShaderStage stage, const Target& target) const;
   std::vector<ShaderStage> stages(Entry entry) const;
+  std::vector<ArchiveOutput> outputs(Entry entry) const;  ///< what `output` can give
+  /// The targets that the permutation was asked for and cannot have, each with the reason.
+  std::vector<std::pair<Target, std::string_view>> absent(Entry entry) const;
   Result<std::string_view> reflection(Entry entry) const;
   Result<std::string_view> cost(Entry entry) const;
   /// The whole program, checked.
@@ -147,7 +162,7 @@ class Archive {
 
 /// One archive with the permutations of all; the same bytes as if one writer had had them all. The axes must agree.
 /// A permutation may be in several of them when its program is the same. Errors: "archive.axes", "archive.conflict",
-/// and those of opening and writing.
+/// "archive.no-parts", and those of opening and writing.
 Status merge_archives(std::span<const std::filesystem::path> parts, const std::filesystem::path& path);
 
 }  // namespace relievo

@@ -1,0 +1,108 @@
+#include "permute/archive/file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+#include "image/file.hpp"
+
+namespace relievo::archive {
+
+namespace fs = std::filesystem;
+
+File::File(File&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+File& File::operator=(File&& other) noexcept {
+  std::swap(descriptor_, other.descriptor_);
+  return *this;
+}
+
+File::~File() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+bool File::write_at(std::uint64_t offset, std::string_view bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written == 0) errno = ENOSPC;
+    if (written <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+    offset += static_cast<std::uint64_t>(written);
+  }
+  return true;
+}
+
+bool File::read_at(std::uint64_t offset, std::span<char> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t count = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count == 0) errno = EIO;
+    if (count <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+    offset += static_cast<std::uint64_t>(count);
+  }
+  return true;
+}
+
+bool File::close() {
+  return ::close(std::exchange(descriptor_, -1)) == 0;
+}
+
+File create_beside(const fs::path& path, std::string_view suffix, fs::path& name) {
+  static std::atomic<unsigned> counter{0};
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+    name = path;
+    name += fmt::format(".{:x}-{:x}-{}{}", ::getpid(), static_cast<unsigned long long>(now), counter++, suffix);
+    const int descriptor = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0 || errno != EEXIST) return File(descriptor);
+  }
+  return {};
+}
+
+tl::unexpected<Error> write_failure(const fs::path& path) {
+  return file_error(path, "archive.write", fmt::format("cannot be written: {}", std::strerror(errno)));
+}
+
+Mapping::Mapping(Mapping&& other) noexcept
+    : bytes_(std::exchange(other.bytes_, {})), owned_(std::exchange(other.owned_, false)) {}
+
+Mapping& Mapping::operator=(Mapping&& other) noexcept {
+  std::swap(bytes_, other.bytes_);
+  std::swap(owned_, other.owned_);
+  return *this;
+}
+
+Mapping::~Mapping() {
+  if (owned_) ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+}
+
+Result<Mapping> Mapping::of_file(const fs::path& path) {
+  const auto failure = [&path](const std::string& reason) {
+    return file_error(path, "archive.open", fmt::format("cannot be opened: {}", reason));
+  };
+  // A pipe would block until somebody writes to it.
+  const File file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  struct stat status {};
+  if (!file || ::fstat(file.descriptor(), &status) != 0) return failure(std::strerror(errno));
+  if (!S_ISREG(status.st_mode)) return failure("it is no regular file");
+  Mapping mapping;
+  if (status.st_size == 0) return mapping;
+  const auto size = static_cast<std::size_t>(status.st_size);
+  void* address = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.descriptor(), 0);
+  if (address == MAP_FAILED) return failure(std::strerror(errno));
+  mapping.bytes_ = {static_cast<const std::byte*>(address), size};
+  mapping.owned_ = true;
+  return mapping;
+}
+
+}  // namespace relievo::archive

@@ -1,0 +1,62 @@
+/// Files by descriptor: what mapping, spooling and replacing need beyond streams.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "relievo/result.hpp"
+
+namespace relievo::archive {
+
+/// An open file, closed in the end.
+class File {
+ public:
+  File() = default;
+  explicit File(int descriptor) : descriptor_(descriptor) {}
+  File(File&& other) noexcept;
+  File& operator=(File&& other) noexcept;
+  ~File();
+
+  explicit operator bool() const { return descriptor_ >= 0; }
+  int descriptor() const { return descriptor_; }
+
+  /// False, with errno, when not all of it could be written.
+  bool write_at(std::uint64_t offset, std::string_view bytes) const;
+  /// False, with errno, when there is less.
+  bool read_at(std::uint64_t offset, std::span<char> bytes) const;
+  /// Closes now; false, with errno, when the system reports a write that failed late.
+  bool close();
+
+ private:
+  int descriptor_ = -1;
+};
+
+/// A new, empty file beside `path`, of a name that nobody else has; `name` receives it.
+File create_beside(const std::filesystem::path& path, std::string_view suffix, std::filesystem::path& name);
+
+/// "'a.rva' cannot be written: No space left on device [archive.write]", from errno.
+tl::unexpected<Error> write_failure(const std::filesystem::path& path);
+
+/// A file's bytes in memory, or somebody else's.
+class Mapping {
+ public:
+  Mapping() = default;
+  explicit Mapping(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  Mapping(Mapping&& other) noexcept;
+  Mapping& operator=(Mapping&& other) noexcept;
+  ~Mapping();
+
+  /// Errors: "archive.open".
+  static Result<Mapping> of_file(const std::filesystem::path& path);
+  std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
+  std::span<const std::byte> bytes_;
+  bool owned_ = false;
+};
+
+}  // namespace relievo::archive

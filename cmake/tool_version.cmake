@@ -6,11 +6,11 @@ foreach(file IN LISTS files)
   string(APPEND hashes ${hash})
 endforeach()
 string(SHA256 hash "${hashes}")
-file(WRITE ${OUTPUT} "#include \"permute/closure.hpp\"
+file(WRITE ${OUTPUT} "#include \"relievo/permute.hpp\"
 
 namespace relievo {
 
-std::string_view tool_version() {
+std::string_view compiler_version() {
   return \"${LIBRARIES}, sources ${hash}\";
 }
 

@@ -47,10 +47,10 @@ struct ParameterSlot {
   bool is_integer = false;
   BindingTime binding = BindingTime::uniform;
   double value = 0;
-  int constant_id = -1;  ///< specialization
-  int offset = -1;       ///< bytes in the Parameters block (set 0, binding 0, std140)
-  double default_value = 0;  ///< the descriptor's
-  bool is_loop = false;      ///< an iteration bound
+  int constant_id = -1;                   ///< specialization
+  int offset = -1;                        ///< bytes in the Parameters block (set 0, binding 0, std140)
+  double default_value = 0;               ///< the descriptor's
+  bool is_loop = false;                   ///< an iteration bound
   std::vector<std::string> choices = {};  ///< of an axis: the names of the values 0, 1, …
 };
 

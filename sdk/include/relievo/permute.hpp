@@ -20,8 +20,8 @@
 namespace relievo {
 
 /// An axis that a manifest varies: technique, a role's technique ("technique.shadow"), stage, address, filter, aov,
-/// count, a parameter or axis of a descriptor ("relief.linear_steps"), or such a name without its owner ("depth_write"),
-/// which stands for that of every owner in a permutation.
+/// count, a parameter or axis of a descriptor ("relief.linear_steps"), or such a name without its owner
+/// ("depth_write"), which stands for that of every owner in a permutation.
 struct ManifestAxis {
   std::string name;
   std::vector<std::string> values;
@@ -66,7 +66,8 @@ struct PermutationPlan {
   std::vector<ArchiveAxis> axes;
   std::vector<Target> targets;
   std::vector<PlannedPermutation> permutations;
-  std::vector<std::string> reasons;  ///< "target essl-300 has no geometry shaders …", "surface.… requires … (file:line)"
+  std::vector<std::string>
+      reasons;  ///< "target essl-300 has no geometry shaders …", "surface.… requires … (file:line)"
 
   std::string name(const PlannedPermutation& permutation) const;  ///< "technique=relief address=clamp"
 };
@@ -78,6 +79,9 @@ Result<PermutationPlan> plan_permutations(const Registry& registry, const Manife
 /// The planned permutation as the composer takes it.
 Result<Permutation> to_permutation(const Registry& registry, const Manifest& manifest, const PermutationPlan& plan,
                                    const PlannedPermutation& planned);
+
+/// Changes with every part of the SDK that compiled programs depend on, and with the versions of the libraries in it.
+std::string_view compiler_version();
 
 /// The i-th of n parts of a plan, i from 0.
 struct Shard {
@@ -92,10 +96,10 @@ struct PermuteProgress {
 };
 
 struct PermuteOptions {
-  unsigned threads = 0;           ///< 0 = all; the archive does not depend on it
+  unsigned threads = 0;  ///< 0 = all; the archive does not depend on it
   Shard shard;
-  bool keep_going = false;        ///< compile what can be compiled after an error
-  Cache* cache = nullptr;         ///< may be null
+  bool keep_going = false;  ///< compile what can be compiled after an error
+  Cache* cache = nullptr;   ///< may be null
   const ClosureCosts* costs = nullptr;
   std::function<void(const PermuteProgress&)> progress;  ///< called from any thread, one at a time
 };

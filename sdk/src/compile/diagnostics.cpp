@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cctype>
 #include <charconv>
 #include <optional>
 

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <spirv_cross/spirv.hpp>
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
+#include <spirv_cross/spirv.hpp>
 
 namespace relievo {
 

@@ -112,8 +112,7 @@ Result<ComposedProgram> compose_parts(const Registry& registry, const Permutatio
   program.parameters = slots;
   program.parameter_block_size = parameter_block_size(slots);
   program.features = features_of(parts);
-  for (const MapDescriptor* map : parts.maps)
-    program.maps.push_back({map->name, map->sampler, map->set, map->binding});
+  for (const MapDescriptor* map : parts.maps) program.maps.push_back({map->name, map->sampler, map->set, map->binding});
   bool count = permutation.count_cost || permutation.aov == Aov::steps;
   std::string macros = axis_macros(permutation.filter, permutation.address, count, permutation.aov);
   for (const StageShader& shader : parts.stage->shaders) {

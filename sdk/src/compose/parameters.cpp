@@ -37,9 +37,9 @@ Status check_binding(const ParameterSlot& slot, const Parameter& parameter) {
   if (allowed.empty() || std::find(allowed.begin(), allowed.end(), slot.binding) != allowed.end()) return {};
   std::vector<std::string_view> names;
   for (const BindingTime time : allowed) names.push_back(to_string(time));
-  return fail(ErrorCode::usage, "compose.binding",
-              fmt::format("{} is bound as {}; expected {}", slot.name, to_string(slot.binding),
-                          fmt::join(names, " or ")));
+  return fail(
+      ErrorCode::usage, "compose.binding",
+      fmt::format("{} is bound as {}; expected {}", slot.name, to_string(slot.binding), fmt::join(names, " or ")));
 }
 
 template <class T>

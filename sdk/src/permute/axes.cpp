@@ -11,8 +11,7 @@ namespace {
 constexpr std::string_view role_prefix = "technique.";
 const std::vector<std::string> switch_names = {"off", "on"};
 
-tl::unexpected<Error> fail_at(const Manifest& manifest, const ManifestAxis& axis, std::string id,
-                              std::string message) {
+tl::unexpected<Error> fail_at(const Manifest& manifest, const ManifestAxis& axis, std::string id, std::string message) {
   return fail(ErrorCode::descriptor, std::move(id), std::move(message), manifest.file, axis.line, 1);
 }
 

@@ -14,8 +14,8 @@ enum class AxisKind { technique, role, stage, address, filter, aov, count, param
 /// A manifest's axis with its names known.
 struct ResolvedAxis {
   AxisKind kind = AxisKind::parameter;
-  std::string role;      ///< of kind `role`
-  ArchiveAxis archive;   ///< its values, as the composer would print them
+  std::string role;     ///< of kind `role`
+  ArchiveAxis archive;  ///< its values, as the composer would print them
   const ManifestAxis* manifest = nullptr;
 
   /// Whether it stands for this parameter ("surface.depth_write").

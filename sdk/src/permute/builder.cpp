@@ -129,8 +129,8 @@ void PermutationBuilder::drop_absent(Permutation& permutation, std::vector<std::
   std::erase_if(permutation.binding_times, [&](const auto& time) { return !is_in(present, time.first); });
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (axes_[i].kind != AxisKind::parameter) continue;
-    const bool used = std::any_of(present.begin(), present.end(),
-                                  [&](const std::string& name) { return axes_[i].names(name); });
+    const bool used =
+        std::any_of(present.begin(), present.end(), [&](const std::string& name) { return axes_[i].names(name); });
     if (!used) values[i] = kNoValue;
   }
 }

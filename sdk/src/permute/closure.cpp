@@ -7,6 +7,8 @@
 #include "compose/resolve.hpp"
 #include "relievo/compile.hpp"
 
+#include "relievo/permute.hpp"
+
 namespace relievo {
 
 namespace {
@@ -25,8 +27,7 @@ Result<Closure> compose_closure(const Registry& registry, const Permutation& per
   closure.fallback = parts->stage->fallback;
   std::vector<bool> leaves_trace;
   for (ParameterSlot& slot : parts->parameters) {
-    const bool is_frozen =
-        slot.binding == BindingTime::specialization && permutation.values.contains(slot.name);
+    const bool is_frozen = slot.binding == BindingTime::specialization && permutation.values.contains(slot.name);
     if (is_frozen) closure.frozen.push_back({slot.constant_id, bits_of(slot)});
     if (slot.binding != BindingTime::macro) slot.value = slot.default_value;
     leaves_trace.push_back(!is_frozen && slot.binding != BindingTime::macro);
@@ -40,8 +41,8 @@ Result<Closure> compose_closure(const Registry& registry, const Permutation& per
 }
 
 std::string describe_contract(const ComposedProgram& program) {
-  std::string text = fmt::format("{} {} {}\n", program.stage, program.parameter_block_size,
-                                 fmt::join(program.features, ","));
+  std::string text =
+      fmt::format("{} {} {}\n", program.stage, program.parameter_block_size, fmt::join(program.features, ","));
   for (const ParameterSlot& slot : program.parameters) {
     text += fmt::format("{} {} {} {} {} {} {} {}\n", slot.name, slot.is_integer, to_string(slot.binding), slot.value,
                         slot.constant_id, slot.offset, slot.is_loop, fmt::join(slot.choices, ","));
@@ -57,7 +58,7 @@ CacheKey closure_key(const Closure& closure, std::span<const Target> targets, bo
   for (const Target& target : targets) options += " " + to_string(target);
   for (const FrozenConstant& constant : closure.frozen) options += fmt::format(" {}:{}", constant.id, constant.bits);
   const std::string contract = describe_contract(closure.program);
-  std::vector<std::string_view> parts = {tool_version(), options, contract};
+  std::vector<std::string_view> parts = {compiler_version(), options, contract};
   for (const ComposedShader& shader : closure.program.shaders) {
     parts.push_back(to_string(shader.stage));
     parts.push_back(shader.text);

@@ -7,7 +7,7 @@
 
 #include "permute/freeze.hpp"
 #include "relievo/cache.hpp"
-#include "relievo/compose.hpp"
+#include "relievo/compile.hpp"
 
 namespace relievo {
 
@@ -19,15 +19,13 @@ struct Closure {
   std::string fallback;  ///< the stage's
 };
 
-/// Specialization constants that the permutation gives a value are frozen, others stay open. Errors: those of composing.
+/// Specialization constants that the permutation gives a value are frozen, others stay open. Errors: those of
+/// composing.
 Result<Closure> compose_closure(const Registry& registry, const Permutation& permutation);
 
 /// What the reflection of a program says beside its shaders: parameters, maps, features.
 std::string describe_contract(const ComposedProgram& program);
 
 CacheKey closure_key(const Closure& closure, std::span<const Target> targets, bool optimize);
-
-/// Changes with every part of the SDK that outputs depend on, and with the versions of the libraries in it.
-std::string_view tool_version();
 
 }  // namespace relievo

@@ -12,6 +12,8 @@
 #include "compile/parallel.hpp"
 #include "permute/cost.hpp"
 
+#include "relievo/permute.hpp"
+
 namespace relievo {
 
 namespace {
@@ -52,7 +54,7 @@ CacheKey program_key(const ClosureTask& task, const std::vector<SpirvWords>& fro
   std::string options = optimize ? "optimized" : "as written";
   for (const Target& target : task.targets) options += " " + to_string(target);
   const std::string contract = describe_contract(task.closure.program);
-  std::vector<std::string_view> parts = {tool_version(), options, contract};
+  std::vector<std::string_view> parts = {compiler_version(), options, contract};
   for (std::size_t i = 0; i < frozen.size(); ++i) {
     parts.push_back(to_string(task.closure.program.shaders[i].stage));
     parts.push_back(bytes_of(frozen[i]));
@@ -71,9 +73,9 @@ ProgramImage image_of(CompiledProgram compiled, std::vector<Target> targets, std
   for (CompiledShader& shader : compiled.shaders) {
     for (const Target& target : targets) {
       const bool is_spirv = target.language == Language::spirv;
-      image.outputs.push_back({shader.stage, target,
-                               is_spirv ? std::string(bytes_of(shader.spirv))
-                                        : std::move(shader.text.at(to_string(target)))});
+      image.outputs.push_back(
+          {shader.stage, target,
+           is_spirv ? std::string(bytes_of(shader.spirv)) : std::move(shader.text.at(to_string(target)))});
     }
   }
   image.reflection = std::move(compiled.reflection);
@@ -160,8 +162,7 @@ void ClosureCompiler::optimize_all(std::span<const ClosureTask> tasks, std::vect
     used.insert(used.end(), items[i].modules.begin(), items[i].modules.end());
     if (programs_.contains(outcomes[i].program)) continue;
     for (std::size_t s = 0; s < items[i].modules.size(); ++s) {
-      wanted.push_back(
-          {items[i].modules[s], {&items[i].frozen[s], optimize_, &tasks[i].closure.program.key}});
+      wanted.push_back({items[i].modules[s], {&items[i].frozen[s], optimize_, &tasks[i].closure.program.key}});
     }
   }
   fill(modules_, wanted);
@@ -192,8 +193,8 @@ void ClosureCompiler::emit_all(std::span<const ClosureTask> tasks, const std::ve
     options.validate = false;  // each module was, once
     const std::string name = std::move(program.key);
     program.key = to_string(outcomes[i].program);  // what the reflection calls it: many permutations share it
-    Result<CompiledProgram> compiled = emit_program(program, std::move(words), tasks[i].targets, options,
-                                                    tasks[i].closure.fallback);
+    Result<CompiledProgram> compiled =
+        emit_program(program, std::move(words), tasks[i].targets, options, tasks[i].closure.fallback);
     if (compiled) {
       outcomes[i].image = std::make_shared<const ProgramImage>(image_of(*std::move(compiled), tasks[i].targets, cost));
     } else {

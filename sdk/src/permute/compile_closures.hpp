@@ -62,8 +62,8 @@ class ClosureCompiler {
   void emit_all(std::span<const ClosureTask> tasks, const std::vector<Item>& items,
                 std::vector<ClosureOutcome>& outcomes);
 
-  Memo sources_;                                      // shader text → the front end's SPIR-V, without lines
-  Memo modules_;                                      // frozen SPIR-V → what ships
+  Memo sources_;                                       // shader text → the front end's SPIR-V, without lines
+  Memo modules_;                                       // frozen SPIR-V → what ships
   std::map<CacheKey, std::optional<Error>> programs_;  // those that were emitted, or could not be
   unsigned threads_;
   bool optimize_;

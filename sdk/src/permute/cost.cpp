@@ -190,8 +190,7 @@ class CostReader {
     if (source->opcode == spv::OpAccessChain && source->operands.size() == 2)
       return uniform_value(source->operands[0], source->operands[1]);
     const auto stored = stores_.find(pointer);
-    if (source->opcode != spv::OpVariable || stored == stores_.end() || stored->second.size() != 1)
-      return std::nullopt;
+    if (source->opcode != spv::OpVariable || stored == stores_.end() || stored->second.size() != 1) return std::nullopt;
     return value(stored->second.front(), arguments, depth + 1);
   }
 
@@ -311,7 +310,8 @@ class CostReader {
     std::vector<std::pair<Loop, std::optional<double>>> loops;
     for (const Loop& loop : loops_of(function)) {
       loops.emplace_back(loop, loop_bound(function, loop, arguments));
-      if (listed_.insert(loop.merge).second) loops_.push_back(loops.back().second ? Json(*loops.back().second) : Json());
+      if (listed_.insert(loop.merge).second)
+        loops_.push_back(loops.back().second ? Json(*loops.back().second) : Json());
     }
     std::optional<double> total = 0.0;
     for (std::size_t i = 0; i < function.instructions.size(); ++i) {

@@ -97,9 +97,8 @@ bool read_flag(TomlReader& reader, std::string_view key, bool fallback) {
   const std::vector<std::string> words = reader.words(key);
   if (words.empty()) return fallback;
   if (words.size() == 1 && (words[0] == "on" || words[0] == "off")) return words[0] == "on";
-  reader.report("describe.type", fmt::format("{} of the manifest is {}; true or false is expected", quote(key),
-                                             quote(words[0])),
-                key);
+  reader.report("describe.type",
+                fmt::format("{} of the manifest is {}; true or false is expected", quote(key), quote(words[0])), key);
   return fallback;
 }
 

@@ -27,11 +27,11 @@ constexpr std::size_t batch_size = 256;
 /// Permutations with the same closure.
 struct Group {
   CacheKey key;
-  CacheKey source;                     // of its last shader: closures that share it are compiled together
-  std::size_t first = 0;               // a planned permutation to compose it from
+  CacheKey source;        // of its last shader: closures that share it are compiled together
+  std::size_t first = 0;  // a planned permutation to compose it from
   std::vector<std::size_t> permutations;
   std::vector<Target> targets;
-  double seconds = 0;                  // measured before, or estimated from the length of the text
+  double seconds = 0;                    // measured before, or estimated from the length of the text
   std::optional<std::uint32_t> program;  // its number in the archive
 };
 
@@ -189,9 +189,8 @@ class Run {
     summary_.pruned = pruned_.size();
     summary_.asked += pruned_.size();
     for (const Group& group : groups_) summary_.asked += group.permutations.size();
-    std::sort(groups_.begin(), groups_.end(), [](const Group& a, const Group& b) {
-      return std::tie(a.source, a.key) < std::tie(b.source, b.key);
-    });
+    std::sort(groups_.begin(), groups_.end(),
+              [](const Group& a, const Group& b) { return std::tie(a.source, a.key) < std::tie(b.source, b.key); });
   }
 
   /// What the cache has goes into the archive at once.
@@ -353,8 +352,8 @@ Result<PermuteSummary> permute(const Registry& registry, const Manifest& manifes
   try {
     return Run(registry, plan, *std::move(axes), manifest.optimize, options).execute(archive);
   } catch (const std::exception& error) {  // nothing throws across the API, out of memory included
-    return fail(ErrorCode::compile, "permute.internal", fmt::format("While permuting {}: {}", manifest.name,
-                                                                    error.what()));
+    return fail(ErrorCode::compile, "permute.internal",
+                fmt::format("While permuting {}: {}", manifest.name, error.what()));
   }
 }
 

@@ -86,9 +86,9 @@ class Planner {
       combinations *= static_cast<double>(axes_[i].archive.values.size());
     }
     if (count + combinations > most_permutations) {
-      return fail(ErrorCode::descriptor, "permute.too-many",
-                  fmt::format("the axes combine to more than {} permutations; fewer values are expected",
-                              most_permutations));
+      return fail(
+          ErrorCode::descriptor, "permute.too-many",
+          fmt::format("the axes combine to more than {} permutations; fewer values are expected", most_permutations));
     }
     return count_through(values, body, [&] { return add_one(values); });
   }

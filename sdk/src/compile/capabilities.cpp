@@ -136,7 +136,7 @@ bool writes_storage(const ShaderModule& module) {
 
 FeatureSet used_features(const ShaderModule& module) {
   FeatureSet features;
-  for_each_instruction(module.spirv, [&](const SpirvInstruction& instruction) {
+  for_each_instruction(*module.spirv, [&](const SpirvInstruction& instruction) {
     if (const std::string_view feature = feature_of(instruction); !feature.empty()) features.emplace(feature);
   });
   if (!module.resources.storage_buffers.empty()) features.insert("storage_buffer");

@@ -58,23 +58,24 @@ Result<SpirvWords> finish_words(const SpirvWords& front_end_words, const Compile
 }
 
 /// What cannot be read is explained best by what is wrong with it.
-Result<ShaderModule> parse_shipped(ShaderStage stage, SpirvWords words, std::span<const SpirvWords> explanation,
+Result<ShaderModule> parse_shipped(ShaderStage stage, SpirvWords words, const SpirvWords& before,
                                    const CompileOptions& options, std::string_view key) {
-  const SpirvWords shipped = options.validate ? words : SpirvWords();
-  Result<ShaderModule> module = parse_module(stage, std::move(words), key);
+  const auto shared = std::make_shared<const SpirvWords>(std::move(words));
+  Result<ShaderModule> module = parse_module(stage, shared, key);
   if (module || !options.validate) return module;
-  if (auto ok = validate_pipeline(explanation.empty() ? shipped : explanation.front(), shipped, key); !ok)
-    return tl::unexpected(ok.error());
+  if (auto ok = validate_pipeline(before, *shared, key); !ok) return tl::unexpected(ok.error());
   return module;
 }
 
-Result<std::vector<ShaderModule>> parse_modules(const ComposedProgram& program, std::vector<SpirvWords> words,
-                                                std::span<const SpirvWords> front_end_words,
-                                                const CompileOptions& options) {
+Result<std::vector<ShaderModule>> make_modules(const ComposedProgram& program,
+                                               std::span<const SpirvWords> front_end_words,
+                                               const CompileOptions& options) {
   std::vector<std::optional<Result<ShaderModule>>> results(program.shaders.size());
   run_parallel(results.size(), options.threads, [&](std::size_t i) {
-    const auto explanation = front_end_words.empty() ? front_end_words : front_end_words.subspan(i, 1);
-    results[i] = parse_shipped(program.shaders[i].stage, std::move(words[i]), explanation, options, program.key);
+    Result<SpirvWords> words = finish_words(front_end_words[i], options, program.key);
+    results[i] =
+        words ? parse_shipped(program.shaders[i].stage, *std::move(words), front_end_words[i], options, program.key)
+              : Result<ShaderModule>(tl::unexpected(words.error()));
   });
   std::vector<ShaderModule> modules;
   for (auto& result : results) {
@@ -108,14 +109,13 @@ std::vector<std::size_t> largest_first(std::span<const ShaderModule> modules) {
   std::vector<std::size_t> order(modules.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return modules[a].spirv.size() > modules[b].spirv.size(); });
+                   [&](std::size_t a, std::size_t b) { return modules[a].spirv->size() > modules[b].spirv->size(); });
   return order;
 }
 
 /// Emits beside validating: the optimizer has trusted the front end's words before.
-Outputs make_outputs(const ComposedProgram& program, std::span<const SpirvWords> front_end_words,
-                     std::span<const ShaderModule> modules, const BindingLayout& layout,
-                     std::span<const Target> targets, const CompileOptions& options) {
+Outputs make_outputs(const ComposedProgram& program, const EmitContext& context, std::span<const ShaderModule> modules,
+                     const BindingLayout& layout, std::span<const Target> targets, const CompileOptions& options) {
   const std::vector<TargetFamily> families = group_targets(targets);
   const std::vector<StageNeighbours> neighbours = find_neighbours(modules);
   Outputs outputs(modules.size());
@@ -124,14 +124,14 @@ Outputs make_outputs(const ComposedProgram& program, std::span<const SpirvWords>
     outputs.texts[i].resize(families.size());
     for (std::size_t f = 0; f < families.size(); ++f) {
       tasks.emplace_back([&, i, f] {
-        outputs.texts[i][f] = emit_family(families[f], modules[i], layout, neighbours[i], program.key);
+        const auto emit = [&] { return emit_family(families[f], modules[i], layout, neighbours[i], program.key); };
+        outputs.texts[i][f] =
+            context.memo ? context.memo->texts(families[f], modules[i], layout, neighbours[i], emit) : emit();
       });
     }
     if (!options.validate) continue;
-    tasks.emplace_back([&, i] {
-      const SpirvWords& before = front_end_words.empty() ? modules[i].spirv : front_end_words[i];
-      outputs.valid[i] = validate_pipeline(before, modules[i].spirv, program.key);
-    });
+    tasks.emplace_back(
+        [&, i] { outputs.valid[i] = validate_pipeline(context.front_end_words[i], *modules[i].spirv, program.key); });
   }
   tasks.emplace_back([&] { outputs.reflection = make_reflection(program, modules, layout, targets); });
   run_parallel(tasks.size(), options.threads, [&](std::size_t task) { tasks[task](); });
@@ -153,14 +153,14 @@ Status check_outputs(const Outputs& outputs) {
 }
 
 CompiledProgram collect(const ComposedProgram& program, std::span<const Target> targets, const BindingLayout& layout,
-                        std::vector<ShaderModule> modules, Outputs outputs) {
+                        std::span<const ShaderModule> modules, Outputs outputs) {
   const std::vector<TargetFamily> families = group_targets(targets);
   CompiledProgram compiled;
   compiled.key = program.key;
   for (std::size_t i = 0; i < modules.size(); ++i) {
     CompiledShader& shader = compiled.shaders.emplace_back();
     shader.stage = modules[i].stage;
-    shader.spirv = std::move(modules[i].spirv);
+    shader.spirv = *modules[i].spirv;
     for (std::size_t f = 0; f < families.size(); ++f) {
       for (std::size_t k = 0; k < families[f].size(); ++k) {
         shader.text[to_string(families[f][k])] = std::move((*outputs.texts[i][f])[k]);
@@ -172,43 +172,28 @@ CompiledProgram collect(const ComposedProgram& program, std::span<const Target> 
   return compiled;
 }
 
-Result<std::vector<SpirvWords>> finish_all(std::span<const SpirvWords> front_end_words, const CompileOptions& options,
-                                           std::string_view key) {
-  std::vector<std::optional<Result<SpirvWords>>> results(front_end_words.size());
-  run_parallel(results.size(), options.threads,
-               [&](std::size_t i) { results[i] = finish_words(front_end_words[i], options, key); });
-  std::vector<SpirvWords> words;
-  for (auto& result : results) {
-    if (!*result) return tl::unexpected(result->error());
-    words.push_back(*std::move(*result));
-  }
-  return words;
-}
-
 Result<CompiledProgram> run_pipeline(const ComposedProgram& program, std::span<const Target> targets,
                                      const CompileOptions& options, std::string_view fallback_stage) {
   if (auto ok = check_request(program, targets, fallback_stage); !ok) return tl::unexpected(ok.error());
   Result<std::vector<SpirvWords>> front_end_words = run_front_end(program, options.threads);
   if (!front_end_words) return tl::unexpected(front_end_words.error());
-  Result<std::vector<SpirvWords>> words = finish_all(*front_end_words, options, program.key);
-  if (!words) return tl::unexpected(words.error());
-  return emit_program(program, *std::move(words), targets, options, fallback_stage, *front_end_words);
+  const Result<std::vector<ShaderModule>> modules = make_modules(program, *front_end_words, options);
+  if (!modules) return tl::unexpected(modules.error());
+  return emit_program(program, *modules, targets, options, fallback_stage, {*front_end_words, nullptr});
 }
 
 }  // namespace
 
-Result<CompiledProgram> emit_program(const ComposedProgram& program, std::vector<SpirvWords> words,
+Result<CompiledProgram> emit_program(const ComposedProgram& program, std::span<const ShaderModule> modules,
                                      std::span<const Target> targets, const CompileOptions& options,
-                                     std::string_view fallback_stage, std::span<const SpirvWords> front_end_words) {
-  Result<std::vector<ShaderModule>> modules = parse_modules(program, std::move(words), front_end_words, options);
-  if (!modules) return tl::unexpected(modules.error());
-  if (auto ok = check_modules(*modules, program, targets, fallback_stage); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_interfaces(*modules, program.key); !ok) return tl::unexpected(ok.error());
-  Result<BindingLayout> layout = make_binding_layout(*modules, program.key);
+                                     std::string_view fallback_stage, const EmitContext& context) {
+  if (auto ok = check_modules(modules, program, targets, fallback_stage); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_interfaces(modules, program.key); !ok) return tl::unexpected(ok.error());
+  Result<BindingLayout> layout = make_binding_layout(modules, program.key);
   if (!layout) return tl::unexpected(layout.error());
-  Outputs outputs = make_outputs(program, front_end_words, *modules, *layout, targets, options);
+  Outputs outputs = make_outputs(program, context, modules, *layout, targets, options);
   if (auto ok = check_outputs(outputs); !ok) return tl::unexpected(ok.error());
-  return collect(program, targets, *layout, *std::move(modules), std::move(outputs));
+  return collect(program, targets, *layout, modules, std::move(outputs));
 }
 
 Result<CompiledProgram> compile(const ComposedProgram& program, std::span<const Target> targets,

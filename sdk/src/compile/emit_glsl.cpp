@@ -99,7 +99,7 @@ VersionDependence find_version_dependence(const ShaderModule& module) {
   VersionDependence found;
   found.passes_structs = passes_structs(module);
   std::set<std::uint32_t> vectors;
-  for_each_instruction(module.spirv, [&](const SpirvInstruction& instruction) {
+  for_each_instruction(*module.spirv, [&](const SpirvInstruction& instruction) {
     const auto& operands = instruction.operands;
     switch (instruction.opcode) {
       case spv::OpTypeVector:
@@ -200,7 +200,7 @@ void emit_glsl(std::span<const Target> targets, const ShaderModule& module, cons
     // Which expressions need a variable depends on how vectors are chosen; and a struct taken apart stays so.
     const bool chooses_otherwise = depends.selects_vectors && has_boolean_mix(options) != has_boolean_mix(before);
     const bool is_new = !compiler || chooses_otherwise || depends.passes_structs;
-    if (is_new) prepare(compiler.emplace(module.ir), module, layout, neighbours);
+    if (is_new) prepare(compiler.emplace(*module.ir), module, layout, neighbours);
     const bool reads_alike = options.es == before.es && has_precise(options) == has_precise(before);
     std::string text = compiler->emit(options, !is_new && reads_alike && !depends.any());
     before = options;

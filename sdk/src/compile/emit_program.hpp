@@ -3,18 +3,22 @@
 
 #include <span>
 #include <string_view>
-#include <vector>
 
-#include "compile/spirv_words.hpp"
+#include "compile/emit_memo.hpp"
+#include "compile/shader_module.hpp"
 #include "relievo/compile.hpp"
 
 namespace relievo {
 
-/// Emits and reflects a program whose shaders have these words, in the order of `program.shaders`, of which only the
-/// stages count. `front_end_words`, when given, explain words that are invalid. Errors: "capability.*",
-/// "compile.interface", "compile.spirv-invalid", "compile.emit", "compile.binding-collision". May throw std::exception.
-Result<CompiledProgram> emit_program(const ComposedProgram& program, std::vector<SpirvWords> words,
+struct EmitContext {
+  std::span<const SpirvWords> front_end_words;  ///< one a module, for validation to explain; needed for that alone
+  EmitMemo* memo = nullptr;                     ///< texts of modules that other programs have as well; may be null
+};
+
+/// Emits and reflects a program from its modules. Errors: "capability.*", "compile.interface",
+/// "compile.spirv-invalid", "compile.emit", "compile.binding-collision". May throw std::exception.
+Result<CompiledProgram> emit_program(const ComposedProgram& program, std::span<const ShaderModule> modules,
                                      std::span<const Target> targets, const CompileOptions& options,
-                                     std::string_view fallback_stage, std::span<const SpirvWords> front_end_words = {});
+                                     std::string_view fallback_stage, const EmitContext& context);
 
 }  // namespace relievo

@@ -137,7 +137,7 @@ void rename_varyings(Compiler& compiler, const ShaderModule& module, const Stage
 }
 
 spirv_cross::ParsedIR hide_unread_outputs(const ShaderModule& module, const StageNeighbours& neighbours) {
-  spirv_cross::ParsedIR ir = module.ir;
+  spirv_cross::ParsedIR ir = *module.ir;
   for (const Resource& output : module.resources.stage_outputs) {
     if (neighbours.unread_outputs.count(location_of(*module.reflection, output)) == 0) continue;
     auto& variable = spirv_cross::variant_get<spirv_cross::SPIRVariable>(ir.ids[output.id]);

@@ -205,7 +205,7 @@ Json shader(const ShaderModule& module) {
   if (module.stage == ShaderStage::geometry) json["geometry"] = geometry(*module.reflection);
   if (module.stage == ShaderStage::compute) json["local_size"] = local_size(*module.reflection);
   // Emitting consumes the compiler, so SPIRV-Cross's own reflection comes from a fresh copy.
-  json["spirv_cross"] = Json::parse(spirv_cross::CompilerReflection(module.ir).compile());
+  json["spirv_cross"] = Json::parse(spirv_cross::CompilerReflection(*module.ir).compile());
   return json;
 }
 

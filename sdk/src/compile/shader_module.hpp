@@ -1,4 +1,4 @@
-/// One shader's SPIR-V, parsed once; every emitter starts from a copy of the parsed form.
+/// One shader's SPIR-V, parsed once; every emitter starts from a copy of the parsed form. Copies of a module share it.
 #pragma once
 
 #include <memory>
@@ -13,16 +13,17 @@ namespace relievo {
 
 struct ShaderModule {
   ShaderStage stage = ShaderStage::compute;
-  SpirvWords spirv;
-  spirv_cross::ParsedIR ir;
-  std::unique_ptr<spirv_cross::CompilerReflection> reflection;
+  std::shared_ptr<const SpirvWords> spirv;
+  std::shared_ptr<const spirv_cross::ParsedIR> ir;
+  std::shared_ptr<const spirv_cross::CompilerReflection> reflection;
   spirv_cross::ShaderResources resources;  ///< only what the entry point uses
 
   spv::ExecutionModel execution_model() const { return reflection->get_execution_model(); }
 };
 
 /// Parses. Errors: "compile.emit" with SPIRV-Cross's words.
-Result<ShaderModule> parse_module(ShaderStage stage, SpirvWords spirv, std::string_view permutation_key);
+Result<ShaderModule> parse_module(ShaderStage stage, std::shared_ptr<const SpirvWords> spirv,
+                                  std::string_view permutation_key);
 
 /// "While <doing> permutation '<key>': <reason>", id "compile.emit".
 tl::unexpected<Error> emit_error(std::string_view doing, std::string_view permutation_key, std::string_view reason);

@@ -62,6 +62,13 @@ CacheKey program_key(const ClosureTask& task, const std::vector<SpirvWords>& fro
   return cache_key(parts);
 }
 
+/// The error with the permutation's name where the program's is.
+Error named(Error error, const std::string& program, const std::string& permutation) {
+  const std::size_t at = error.message.find(program);
+  if (at != std::string::npos) error.message.replace(at, program.size(), permutation);
+  return error;
+}
+
 /// In an archive's order: by stage, then language and version.
 ProgramImage image_of(CompiledProgram compiled, std::vector<Target> targets, std::string cost) {
   std::sort(targets.begin(), targets.end(), [](const Target& a, const Target& b) {
@@ -169,36 +176,81 @@ void ClosureCompiler::optimize_all(std::span<const ClosureTask> tasks, std::vect
   keep_used(modules_, std::move(used));
 }
 
+/// Parses the modules that several new programs have, so that each is parsed and emitted once.
+ClosureCompiler::SharedModules ClosureCompiler::parse_shared(std::span<const ClosureTask> tasks,
+                                                             const std::vector<Item>& items,
+                                                             const std::vector<std::size_t>& first, EmitMemo& memo) {
+  std::map<CacheKey, std::pair<std::size_t, ShaderStage>> uses;
+  for (const std::size_t i : first) {
+    for (std::size_t s = 0; s < items[i].modules.size(); ++s) {
+      auto& [count, stage] = uses[items[i].modules[s]];
+      ++count;
+      stage = tasks[i].closure.program.shaders[s].stage;
+    }
+  }
+  SharedModules shared;
+  for (const auto& [key, use] : uses) {
+    const Words& words = modules_.find(key)->second;
+    if (use.first < 2 || words.error) continue;
+    Result<ShaderModule> module = parse_module(use.second, words.words, "");
+    if (!module) continue;  // emitting says what is wrong
+    memo.share(*module);
+    shared.emplace(key, *std::move(module));
+  }
+  return shared;
+}
+
+Result<std::vector<ShaderModule>> ClosureCompiler::modules_of(const ClosureTask& task, const Item& item,
+                                                              const SharedModules& shared) const {
+  std::vector<ShaderModule> modules;
+  for (std::size_t s = 0; s < item.modules.size(); ++s) {
+    if (const auto known = shared.find(item.modules[s]); known != shared.end()) {
+      modules.push_back(known->second);
+      continue;
+    }
+    const Words& words = modules_.find(item.modules[s])->second;
+    if (words.error) return tl::unexpected(*words.error);
+    Result<ShaderModule> module =
+        parse_module(task.closure.program.shaders[s].stage, words.words, task.closure.program.key);
+    if (!module) return tl::unexpected(module.error());
+    modules.push_back(*std::move(module));
+  }
+  return modules;
+}
+
+Result<ProgramImage> ClosureCompiler::emit(const ClosureTask& task, std::span<const ShaderModule> modules,
+                                           const CacheKey& key, EmitMemo& memo) const {
+  ComposedProgram program = task.closure.program;
+  std::vector<SpirvWords> words;
+  for (const ShaderModule& module : modules) words.push_back(*module.spirv);
+  std::string cost = describe_cost(program, words);
+  CompileOptions options;
+  options.validate = false;      // each module was, once
+  program.key = to_string(key);  // what the reflection calls it: many permutations share it
+  Result<CompiledProgram> compiled =
+      emit_program(program, modules, task.targets, options, task.closure.fallback, {{}, &memo});
+  if (!compiled) return tl::unexpected(named(compiled.error(), program.key, task.closure.program.key));
+  return image_of(*std::move(compiled), task.targets, std::move(cost));
+}
+
 void ClosureCompiler::emit_all(std::span<const ClosureTask> tasks, const std::vector<Item>& items,
                                std::vector<ClosureOutcome>& outcomes) {
   std::vector<std::size_t> first;  // the first task of every new program
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (!outcomes[i].error && programs_.try_emplace(outcomes[i].program).second) first.push_back(i);
   }
+  EmitMemo memo;
+  const SharedModules shared = parse_shared(tasks, items, first, memo);
   run_parallel(first.size(), threads_, [&](std::size_t k) {
     const std::size_t i = first[k];
     const double start = thread_seconds();
-    ComposedProgram program = tasks[i].closure.program;
-    std::vector<SpirvWords> words;
-    for (const CacheKey& key : items[i].modules) {
-      const Words& module = modules_.find(key)->second;
-      if (module.error) {
-        outcomes[i].error = module.error;
-        return;
-      }
-      words.push_back(*module.words);
-    }
-    const std::string cost = describe_cost(program, words);
-    CompileOptions options;
-    options.validate = false;  // each module was, once
-    const std::string name = std::move(program.key);
-    program.key = to_string(outcomes[i].program);  // what the reflection calls it: many permutations share it
-    Result<CompiledProgram> compiled =
-        emit_program(program, std::move(words), tasks[i].targets, options, tasks[i].closure.fallback);
-    if (compiled) {
-      outcomes[i].image = std::make_shared<const ProgramImage>(image_of(*std::move(compiled), tasks[i].targets, cost));
+    const Result<std::vector<ShaderModule>> modules = modules_of(tasks[i], items[i], shared);
+    Result<ProgramImage> image = modules ? emit(tasks[i], *modules, outcomes[i].program, memo)
+                                         : Result<ProgramImage>(tl::unexpected(modules.error()));
+    if (image) {
+      outcomes[i].image = std::make_shared<const ProgramImage>(*std::move(image));
     } else {
-      outcomes[i].error = compiled.error();
+      outcomes[i].error = image.error();
     }
     outcomes[i].seconds += thread_seconds() - start;
   });

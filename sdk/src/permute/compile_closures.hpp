@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "compile/emit_memo.hpp"
+#include "compile/shader_module.hpp"
 #include "permute/closure.hpp"
 #include "relievo/archive.hpp"
 
@@ -52,6 +54,15 @@ class ClosureCompiler {
     std::vector<CacheKey> sources, modules;
     std::vector<SpirvWords> frozen;
   };
+
+  using SharedModules = std::map<CacheKey, ShaderModule>;
+
+  SharedModules parse_shared(std::span<const ClosureTask> tasks, const std::vector<Item>& items,
+                             const std::vector<std::size_t>& first, EmitMemo& memo);
+  Result<std::vector<ShaderModule>> modules_of(const ClosureTask& task, const Item& item,
+                                               const SharedModules& shared) const;
+  Result<ProgramImage> emit(const ClosureTask& task, std::span<const ShaderModule> modules, const CacheKey& key,
+                            EmitMemo& memo) const;
 
   template <class Make>
   void fill(Memo& memo, const std::vector<std::pair<CacheKey, Make>>& wanted) const;

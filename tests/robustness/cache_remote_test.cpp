@@ -106,8 +106,8 @@ TEST(CacheRemote, ConnectionThatTheServerClosedIsMadeAnew) {
   const TemporaryFolder folder;
   LoggedCache cache(shared_options(folder / "first", server.address()));
   ASSERT_THAT(server.command({"CLIENT", "KILL", "TYPE", "normal", "SKIPME", "yes"}), HasSubstr(":1"));
-  EXPECT_EQ(load_numbers(*cache, 1).none, 1);
-  store_numbers(*cache, 1);
+  // More than the socket takes at once: what is sent after the first piece would raise SIGPIPE.
+  cache->store(numbered_key(0), numbered_payload(0, 8 << 20));
   cache.close();
   EXPECT_TRUE(server.command({"EXISTS", remote_name(0)}).starts_with(":1"));
   EXPECT_THAT(cache.said(), IsEmpty());

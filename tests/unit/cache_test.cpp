@@ -84,7 +84,7 @@ TEST(CacheFolder, ThatCannotServeIsAnError) {
   EXPECT_EQ(error_id(options_with(folder / "file", (1 << 20) - 1)), "cache.size");
 }
 
-TEST(CacheRemote, AddressThatIsNoneIsAnError) {
+TEST(CacheAddress, ThatIsNoneIsAnError) {
   const TemporaryFolder folder;
   CacheOptions options = options_with(folder.path(), 1 << 20);
   for (const char* bad : {"redis", "redis://", "http://host", "redis://host:", "redis://host:0", "redis://host:65536",

@@ -40,7 +40,7 @@ SizeBound::SizeBound(std::string folder, std::uint64_t max_bytes) : folder_(std:
 
 SizeBound::~SizeBound() {
   if (booked_ == 0) return;
-  const auto file = UsageFile::lock(folder_, UsageFile::Absent::leave);
+  const auto file = UsageFile::lock(folder_, UsageFile::Absent::leave, patience_);
   if (!file) return;
   auto usage = file->read();
   if (!usage || usage->generation != generation_) return;
@@ -62,8 +62,9 @@ void SizeBound::unbook(std::uint64_t bytes) {
 
 std::uint64_t SizeBound::book_batch(std::uint64_t bytes) {
   const std::uint64_t batch = std::max(bytes, max_bytes_ / 128);
-  const auto file = UsageFile::lock(folder_, UsageFile::Absent::make);
+  const auto file = UsageFile::lock(folder_, UsageFile::Absent::make, patience_);
   if (!file) {
+    patience_ = std::chrono::milliseconds(0);
     generation_ = 0;  // nothing was booked, so nothing is to be given back
     booked_ += batch;
     return 0;

@@ -1,6 +1,7 @@
 /// Keeps a folder within its bytes: entries that were used longest ago go first.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <mutex>
 #include <string>
@@ -33,6 +34,7 @@ class SizeBound {
   std::mutex mutex_;
   std::uint64_t booked_ = 0;  ///< and not yet used
   std::uint64_t generation_ = 0;
+  std::chrono::milliseconds patience_{1000};  ///< with the lock's holder; none after it was in vain
 };
 
 }  // namespace relievo::cache

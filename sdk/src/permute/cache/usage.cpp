@@ -5,7 +5,6 @@
 #include <xxhash.h>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <string_view>
 #include <thread>
 
@@ -19,15 +18,14 @@ namespace {
 constexpr std::string_view kMagic = "RlvUsage";
 constexpr std::size_t kRecordSize = 32;  // magic, bytes, generation, hash of these
 
-bool lock_within_a_second(int fd) {
-  using namespace std::chrono_literals;
-  const auto end = std::chrono::steady_clock::now() + 1s;
+bool lock_within(int fd, std::chrono::milliseconds patience) {
+  const auto end = std::chrono::steady_clock::now() + patience;
   while (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
     if (errno == EINTR) continue;
     // A file system without locks is used without: the bound is then kept by each process for itself.
     if (errno != EWOULDBLOCK) return true;
     if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(500us);
+    std::this_thread::sleep_for(std::chrono::microseconds(500));
   }
   return true;
 }
@@ -42,10 +40,10 @@ std::uint64_t new_generation() {
   return static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
 }
 
-std::optional<UsageFile> UsageFile::lock(const std::string& folder, Absent absent) {
+std::optional<UsageFile> UsageFile::lock(const std::string& folder, Absent absent, std::chrono::milliseconds patience) {
   const int make = absent == Absent::make ? O_CREAT : 0;
   FileDescriptor file(::open((folder + "/usage").c_str(), O_RDWR | make | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666));
-  if (!file || !lock_within_a_second(file.get())) return std::nullopt;
+  if (!file || !lock_within(file.get(), patience)) return std::nullopt;
   return UsageFile(std::move(file));
 }
 

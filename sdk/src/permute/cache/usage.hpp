@@ -5,6 +5,7 @@
 /// anew. A count that is damaged does the same.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -24,8 +25,9 @@ std::uint64_t new_generation();
 class UsageFile {
  public:
   enum class Absent { make, leave };
-  /// Nothing where the lock is not to be had within a second: its holder may have been stopped.
-  static std::optional<UsageFile> lock(const std::string& folder, Absent absent);
+  /// Nothing where the lock is not to be had in time: its holder may have been stopped.
+  static std::optional<UsageFile> lock(const std::string& folder, Absent absent,
+                                       std::chrono::milliseconds patience = std::chrono::seconds(1));
 
   /// Nothing when the file is new, or damaged.
   std::optional<Usage> read() const;

@@ -11,6 +11,7 @@
 namespace relievo {
 namespace {
 
+using test::fault_of;
 using test::fault_of_all;
 
 const std::vector<std::string_view> texts = {examples::technique, examples::map, examples::stage};

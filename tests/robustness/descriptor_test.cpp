@@ -5,38 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "support/descriptor_faults.hpp"
 #include "unit/describe_examples.hpp"
 
 namespace relievo {
 namespace {
 
-/// What is wrong with a parser's answer, or empty.
-template <class Descriptor>
-std::string fault_of(const Result<Descriptor>& result, const std::string& path) {
-  if (!result) {
-    const Error& error = result.error();
-    if (error.line < 1 || error.column < 1) return "the error has no place";
-    if (error.file != path) return "the error names another file";
-    if (!error.id.starts_with("describe.") || error.message.empty()) return "the error says nothing";
-    return {};
-  }
-  if (result->name.empty() || result->title.empty()) return "a name is empty";
-  for (const Parameter& parameter : result->parameters) {
-    const bool in_order = parameter.minimum <= parameter.value && parameter.value <= parameter.maximum;
-    if (!in_order) return "a default is out of range";
-    if (parameter.is_loop && parameter.minimum < 1) return "a loop runs less than once";
-  }
-  return {};
-}
-
-std::string fault_of_all(std::string_view text) {
-  const std::string path = "f.toml";
-  for (const std::string& fault : {fault_of(parse_technique(text, path), path), fault_of(parse_map(text, path), path),
-                                   fault_of(parse_stage(text, path), path)}) {
-    if (!fault.empty()) return fault;
-  }
-  return {};
-}
+using test::fault_of;
+using test::fault_of_all;
 
 const std::vector<std::string_view> texts = {examples::technique, examples::map, examples::stage};
 

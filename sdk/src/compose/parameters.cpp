@@ -45,7 +45,8 @@ Status check_binding(const ParameterSlot& slot, const Parameter& parameter) {
 template <class T>
 Status check_known(const std::map<std::string, T>& given, const std::vector<ParameterSlot>& slots) {
   for (const auto& [name, value] : given) {
-    if (std::any_of(slots.begin(), slots.end(), [&](const ParameterSlot& s) { return s.name == name; })) continue;
+    if (std::any_of(slots.begin(), slots.end(), [&name = name](const ParameterSlot& s) { return s.name == name; }))
+      continue;
     std::vector<std::string> known;
     for (const ParameterSlot& slot : slots) known.push_back(slot.name);
     std::string nearest = nearest_name(name, known);

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
-#include <type_traits>
 
 namespace relievo::archive {
 
@@ -43,13 +43,19 @@ Status check_header(std::span<const std::byte> file, const Header& header, const
   return {};
 }
 
-/// The sections lie one after the other, aligned, and fill the index.
-bool sections_fit(const Header& header) {
+bool is_zero(std::span<const std::byte> bytes) {
+  return std::ranges::all_of(bytes, [](std::byte byte) { return byte == std::byte{0}; });
+}
+
+/// The sections lie one after the other, aligned, with zeros between, and fill the index.
+bool sections_fit(std::span<const std::byte> file, const Header& header) {
   if (header.section_count != kSectionCount || header.reserved != 0) return false;
   std::uint64_t expected = sizeof(Header);
   for (const SectionRecord& section : header.sections) {
     if (section.offset != expected || section.size > header.index_size - expected) return false;
-    expected = aligned(expected + section.size);  // at most index_size, which is aligned
+    const std::uint64_t end = expected + section.size;
+    expected = aligned(end);  // at most index_size, which is aligned
+    if (!is_zero(file.subspan(end, expected - end))) return false;
   }
   return expected == header.index_size;
 }
@@ -93,7 +99,8 @@ Result<Index> read_index(std::span<const std::byte> file, const std::string& nam
   if (Status status = check_header(file, header, name); !status) return tl::unexpected(status.error());
   Index index;
   index.file = file;
-  if (!sections_fit(header) || !view_sections(header, index)) return format_failure(name, "its sections do not fit");
+  if (!sections_fit(file, header) || !view_sections(header, index))
+    return format_failure(name, "its sections do not fit");
   if (const std::string fault = fault_of(index); !fault.empty()) return format_failure(name, fault);
   return index;
 }

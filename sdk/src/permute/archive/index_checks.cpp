@@ -167,10 +167,9 @@ std::string fault_of_absences(const Index& index) {
 }
 
 std::string fault_of_blobs(const Index& index) {
-  std::uint64_t expected = index.blobs.empty() ? index.file.size() : index.blobs.front().offset;
+  // The last section: the index ends with it.
   const auto* end_of_index = reinterpret_cast<const std::byte*>(index.blobs.data() + index.blobs.size());
-  if (expected != aligned(static_cast<std::uint64_t>(end_of_index - index.file.data())))
-    return "its blobs do not follow the index";
+  std::uint64_t expected = aligned(static_cast<std::uint64_t>(end_of_index - index.file.data()));
   for (const BlobRecord& blob : index.blobs) {
     if (blob.offset != expected || blob.size > index.file.size() - expected) return "a blob does not fit";
     expected = aligned(expected + blob.size);

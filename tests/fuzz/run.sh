@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# tests/fuzz/run.sh [SECONDS [NAME…]]: builds the preset `fuzz` and runs each target so long (60 s), from the stored inputs
+# and what earlier runs found (build/fuzz/corpus). What fails is left in build/fuzz/findings; the script then fails.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+seconds=${1:-60}
+shift || true
+jobs=${RELIEVO_JOBS:-2}
+build=build/fuzz
+
+[ -f $build/build.ninja ] || cmake --preset fuzz >/dev/null
+ninja -C $build -j "$jobs" --quiet relievo_fuzz
+mkdir -p $build/findings
+
+names=("$@")
+if [ ${#names[@]} -eq 0 ]; then
+  for source in tests/fuzz/*_fuzz.cpp; do names+=("$(basename "$source" _fuzz.cpp)"); done
+fi
+
+failed=0
+for name in "${names[@]}"; do
+  found=$build/corpus/$name
+  log=$build/fuzz_$name.log
+  mkdir -p "$found"
+  # The packaged compilers allocate for good; -timeout catches what hangs.
+  if $build/bin/fuzz_"$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
+      -artifact_prefix=$build/findings/"$name"- "$found" tests/fuzz/corpus/"$name" >"$log" 2>&1; then
+    result=ok
+  else
+    result=FAILED
+    failed=1
+    tail -40 "$log" >&2
+  fi
+  awk -v name="$name" -v result=$result '
+    /number_of_executed_units/ { runs = $2 } /average_exec_per_sec/ { rate = $2 } /peak_rss_mb/ { rss = $2 }
+    / cov: / { for (i = 1; i < NF; i++) if ($i == "cov:") cov = $(i + 1) }
+    END { printf "%-12s %-6s %10d runs %8d/s %8d edges %6d MB\n", name, result, runs, rate, cov, rss }' "$log"
+done
+exit $failed

@@ -54,12 +54,12 @@ void add_techniques_option(CLI::App& app, Context& context) {
 
 namespace {
 
-/// Every "owner.parameter" of the registry.
-std::vector<std::string> known_parameters(const Registry& registry) {
-  std::vector<std::string> known;
+/// Every parameter of the registry by "owner.parameter".
+std::map<std::string, const Parameter*> known_parameters(const Registry& registry) {
+  std::map<std::string, const Parameter*> known;
   auto add = [&](const auto& descriptors) {
     for (const auto& [name, descriptor] : descriptors) {
-      for (const Parameter& parameter : descriptor.parameters) known.push_back(name + "." + parameter.name);
+      for (const Parameter& parameter : descriptor.parameters) known.emplace(name + "." + parameter.name, &parameter);
     }
   };
   add(registry.techniques);
@@ -68,7 +68,13 @@ std::vector<std::string> known_parameters(const Registry& registry) {
   return known;
 }
 
-Result<double> parse_number(const std::string& text, const std::string& key) {
+/// A number, or the name of an axis's value.
+Result<double> parse_setting(const Parameter& parameter, const std::string& key, const std::string& text) {
+  if (!parameter.choices.empty()) {
+    const Result<double> value = parse_value(parameter, text);
+    if (value) return value;
+    return fail(ErrorCode::usage, "cli.set", fmt::format("--set {}={}: {}", key, text, value.error().message));
+  }
   char* end = nullptr;
   double value = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !std::isfinite(value)) {
@@ -82,7 +88,7 @@ Result<double> parse_number(const std::string& text, const std::string& key) {
 Result<Settings> parse_settings(const Registry& registry, const std::vector<std::string>& given,
                                 const std::string& only) {
   Settings settings;
-  std::vector<std::string> known = known_parameters(registry);
+  const std::map<std::string, const Parameter*> known = known_parameters(registry);
   for (const std::string& item : given) {
     std::size_t equals = item.find('=');
     if (equals == std::string::npos)
@@ -96,13 +102,16 @@ Result<Settings> parse_settings(const Registry& registry, const std::vector<std:
       settings.filters[owner] = *filter;
       continue;
     }
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      std::string nearest = nearest_name(key, known);
+    const auto parameter = known.find(key);
+    if (parameter == known.end()) {
+      std::vector<std::string> names;
+      for (const auto& [name, ignored] : known) names.push_back(name);
+      std::string nearest = nearest_name(key, names);
       return fail(ErrorCode::usage, "cli.set",
                   fmt::format("--set {}: '{}' is no parameter{}", item, key,
                               nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
     }
-    Result<double> value = parse_number(text, key);
+    Result<double> value = parse_setting(*parameter->second, key, text);
     if (!value) return tl::unexpected(value.error());
     settings.values[key] = *value;
   }

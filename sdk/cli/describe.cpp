@@ -12,13 +12,19 @@ nlohmann::json parameters_json(const std::vector<Parameter>& parameters) {
   for (const Parameter& p : parameters) {
     list.push_back({{"name", p.name},
                     {"title", p.title},
-                    {"kind", p.is_loop ? "loop" : "parameter"},
+                    {"kind", p.is_loop            ? "loop"
+                             : !p.choices.empty() ? "axis"
+                                                  : "parameter"},
                     {"type", p.is_integer ? "int" : "float"},
                     {"unit", p.unit},
                     {"min", p.minimum},
                     {"max", p.maximum},
                     {"default", p.value},
                     {"binding", to_string(p.binding)}});
+    if (p.choices.empty()) continue;
+    nlohmann::json rules = nlohmann::json::array();
+    for (const Rule& rule : p.rules) rules.push_back(to_string(rule));
+    list.back().update({{"values", p.choices}, {"maps", p.maps}, {"features", p.features}, {"rules", rules}});
   }
   return list;
 }

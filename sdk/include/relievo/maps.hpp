@@ -85,4 +85,8 @@ Result<MapFile> read_map(const std::filesystem::path& path, const MapData* shape
 /// map.
 Texture map_texture(const MapData& map);
 
+/// A height map as a texture of the axis `height.format`: "red"; "alpha": RGBA floats, the first three 0;
+/// "red_green": heights rounded to 16 bits, high byte first. Errors: "maps.height-format".
+Result<Texture> height_texture(const MapData& height, std::string_view format);
+
 }  // namespace relievo

@@ -88,12 +88,36 @@ int bind_buffer(int set, int binding, Buffer buffer, Job& job, std::vector<Resou
   return index;
 }
 
+namespace {
+
+/// The value of the axis `height.format` in a program.
+std::string height_format(const ComposedProgram& composed) {
+  for (const ParameterSlot& slot : composed.parameters) {
+    if (slot.name == "height.format") return slot.choices[static_cast<std::size_t>(slot.value)];
+  }
+  return "red";
+}
+
+Texture texture_of(const ComposedProgram& composed, const MapData& map) {
+  if (map.name != "height") return map_texture(map);
+  Result<Texture> texture = height_texture(map, height_format(composed));
+  return texture ? *std::move(texture) : map_texture(map);  // the axis has only values that there are
+}
+
+std::string texture_name(const ComposedProgram& composed, const std::string& map) {
+  const std::string format = map == "height" ? height_format(composed) : "red";
+  return format == "red" ? map : map + " (" + format + ")";
+}
+
+}  // namespace
+
 void bind_maps(const ComposedProgram& composed, const MapSet& maps, Job& job, std::vector<ResourceBinding>& resources) {
   for (const MapSlot& slot : composed.maps) {
+    const std::string name = texture_name(composed, slot.map);
     auto known =
-        std::find_if(job.textures.begin(), job.textures.end(), [&](const Texture& t) { return t.name == slot.map; });
+        std::find_if(job.textures.begin(), job.textures.end(), [&](const Texture& t) { return t.name == name; });
     int index = static_cast<int>(known - job.textures.begin());
-    if (known == job.textures.end()) job.textures.push_back(map_texture(maps.at(slot.map)));
+    if (known == job.textures.end()) job.textures.push_back(texture_of(composed, maps.at(slot.map)));
     resources.push_back({slot.set, slot.binding, index});
   }
 }

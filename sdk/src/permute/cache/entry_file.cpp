@@ -18,7 +18,7 @@ namespace relievo::cache {
 
 namespace {
 
-constexpr std::int64_t kTouchAge = 5 * 60;  // s; eviction need not know better, and most hits then cost nothing
+constexpr std::int64_t kTouchAge = 300;  // s; eviction need not know better, and most hits then cost nothing
 
 /// Reads until both are full. A file that ends before is short by what it lacks.
 bool read_whole(int fd, EntryHeader& header, std::string& payload) {

@@ -43,7 +43,7 @@ namespace relievo::cache {
 namespace {
 
 constexpr std::string_view kEntryEnding = ".entry", kTemporaryEnding = ".tmp";
-constexpr std::int64_t kUnfinishedAge = 10 * 60;  // s; a writer needs less than one
+constexpr std::int64_t kUnfinishedAge = 600;  // s; a writer needs less than one
 
 using Directory = std::unique_ptr<DIR, int (*)(DIR*)>;
 
@@ -150,7 +150,7 @@ Result<FolderListing> list_folder(const std::string& folder) {
   while (const dirent* child = ::readdir(top.get())) {
     const std::string digits = child->d_name;
     if (digits.size() != 2 || !is_lower_hex(digits)) continue;
-    const Directory directory = open_directory(folder + "/" + digits);
+    const Directory directory = open_directory(fmt::format("{}/{}", folder, digits));
     if (!directory) continue;
     while (const dirent* file = ::readdir(directory.get()))
       add_file(listing, folder, digits, directory.get(), file->d_name);

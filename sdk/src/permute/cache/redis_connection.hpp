@@ -38,7 +38,7 @@ class RedisConnection {
   tl::expected<RedisReply, RedisTrouble> receive(Deadline deadline);
 
   Context context_;
-  std::vector<char> buffer_ = std::vector<char>(128 * 1024);
+  std::vector<char> buffer_ = std::vector<char>(std::size_t{1} << 17);
 };
 
 }  // namespace relievo::cache

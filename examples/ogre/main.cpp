@@ -37,8 +37,7 @@ Status prepare(const relievo::Registry& registry, const relievo::RenderRequest& 
       relievo::render(**backend, registry, made.scene, made.mesh, made.maps, request);  // bakes into made.maps
   if (!drawn) return tl::unexpected(drawn.error());
   made.reference = {drawn->image.width, drawn->image.height, std::move(drawn->color)};
-  Result<relievo::Job> job =
-      relievo::make_render_job(registry, made.scene, made.mesh, made.maps, request, language);
+  Result<relievo::Job> job = relievo::make_render_job(registry, made.scene, made.mesh, made.maps, request, language);
   if (!job) return tl::unexpected(job.error());
   made.job = std::move(*job);
   return {};
@@ -107,6 +106,7 @@ Status run(const Options& options) {
   const Picture own = draw_own_parallax(engine, made);
   if (engine.complaints() > 0)
     return relievo::fail(relievo::ErrorCode::backend, "ogre.complaint", "OGRE reports errors or warnings; see above");
+  std::filesystem::create_directories(options.folder);
   if (Status status = write(options.folder, "technique.png", *technique); !status) return status;
   if (Status status = write(options.folder, "own_parallax.png", own); !status) return status;
   return write(options.folder, "side_by_side.png", side_by_side({&*technique, &own, &made.reference}));
@@ -139,8 +139,8 @@ int main(int argc, char** argv) {
     if (status) return 0;
     std::fprintf(stderr, "%s\n", relievo::format(status.error()).c_str());
     return relievo::exit_code(status.error().code);
-  } catch (const Ogre::Exception& error) {
-    std::fprintf(stderr, "OGRE: %s\n", error.getFullDescription().c_str());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "OGRE: %s\n", error.what());
     return 1;
   }
 }

@@ -71,12 +71,14 @@ void make_material(const relievo::SceneMaterial& look, const Ogre::TexturePtr& m
   pass->setSpecular(look.specular, look.specular, look.specular, 1);
   pass->setShininess(look.shininess);
   ShaderGenerator& generator = ShaderGenerator::getSingleton();
-  generator.createShaderBasedTechnique(*material, Ogre::MaterialManager::DEFAULT_SCHEME_NAME, ShaderGenerator::DEFAULT_SCHEME_NAME);
+  generator.createShaderBasedTechnique(*material, Ogre::MaterialManager::DEFAULT_SCHEME_NAME,
+                                       ShaderGenerator::DEFAULT_SCHEME_NAME);
   auto* lighting = generator.createSubRenderState<NormalMapLighting>();
   lighting->setNormalMapSpace(NormalMapLighting::NMS_PARALLAX);
   lighting->setNormalMapTextureName(map->getName());
   lighting->getNormalMapSampler()->setFiltering(Ogre::TFO_BILINEAR);
-  generator.getRenderState(ShaderGenerator::DEFAULT_SCHEME_NAME, name, Ogre::RGN_DEFAULT, 0)->addTemplateSubRenderState(lighting);
+  generator.getRenderState(ShaderGenerator::DEFAULT_SCHEME_NAME, name, Ogre::RGN_DEFAULT, 0)
+      ->addTemplateSubRenderState(lighting);
 }
 
 void add_lights(Ogre::SceneManager& scene, const relievo::Scene& source) {

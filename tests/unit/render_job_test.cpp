@@ -94,5 +94,13 @@ TEST(RenderJob, AMissingMapIsNamed) {
   EXPECT_EQ(no_height.error().id, "render.missing-map");
 }
 
+TEST(RenderJob, AMapThatAnAxisRulesOutIsNotAskedFor) {
+  const auto registry = load_registry();
+  RenderRequest request = request_of("relief");
+  request.values["surface.normal_source"] = 1;  // height
+  const auto job = make_render_job(*registry, Scene{}, make_plane(), flat_maps(), request, "spirv");
+  EXPECT_TRUE(job) << format(job.error());
+}
+
 }  // namespace
 }  // namespace relievo

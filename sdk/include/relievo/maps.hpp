@@ -55,7 +55,8 @@ using MapSet = std::map<std::string, MapData, std::less<>>;
 /// The set that holds the height map alone.
 MapSet map_set(const HeightMap& height_map);
 
-/// The maps that a stage and the technique in its roles read; `technique` is empty for stages that trace nothing.
+/// The maps that a stage and the technique in its roles read, with whatever values of their axes; `technique` is empty
+/// for stages that trace nothing.
 /// Errors: "describe.unknown-stage", "describe.unknown-technique".
 Result<std::vector<std::string>> required_maps(const Registry& registry, std::string_view stage,
                                                std::string_view technique);

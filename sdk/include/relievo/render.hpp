@@ -36,7 +36,7 @@ struct RenderResult {
 Result<std::vector<std::byte>> scene_block(const Scene& scene);
 
 /// One Draw of the scene's mesh. `mesh` is checked and has one normal a position (scene_mesh does both); `maps` holds
-/// the required_maps of the stage and the technique, else the error is "render.missing-map".
+/// the maps that the permutation reads (all of required_maps will do), else the error is "render.missing-map".
 Result<Job> make_render_job(const Registry& registry, const Scene& scene, const Mesh& mesh, const MapSet& maps,
                             const RenderRequest& request, std::string_view shader_target);
 

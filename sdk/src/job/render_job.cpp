@@ -88,18 +88,12 @@ Draw make_draw(const StageDescriptor& stage, const MeshBuffers& mesh, Job& job) 
   return draw;
 }
 
-Status check_maps(const Registry& registry, const RenderRequest& request, const MapSet& maps) {
-  Result<std::vector<std::string>> needed = required_maps(registry, request.stage, request.technique);
-  if (!needed) return tl::unexpected(needed.error());
-  needed->push_back("height");  // its address mode is that of the permutation
-  for (const std::string& map : *needed) {
-    if (maps.contains(map)) continue;
-    return fail(ErrorCode::usage, "render.missing-map",
-                fmt::format("technique '{}' in stage '{}' reads the map '{}', which the set of maps lacks; expected it "
-                            "baked (bake_map)",
-                            request.technique, request.stage, map));
-  }
-  return {};
+Status check_map(const MapSet& maps, const std::string& map, const RenderRequest& request) {
+  if (maps.contains(map)) return {};
+  return fail(ErrorCode::usage, "render.missing-map",
+              fmt::format("technique '{}' in stage '{}' reads the map '{}', which the set of maps lacks; expected it "
+                          "baked (bake_map)",
+                          request.technique, request.stage, map));
 }
 
 }  // namespace
@@ -124,7 +118,7 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
     return fail(ErrorCode::usage, "render.stage",
                 "stage '" + request.stage + "' draws nothing; expected one that has a mesh, such as 'surface'");
   }
-  if (Status status = check_maps(registry, request, maps); !status) return tl::unexpected(status.error());
+  if (Status status = check_map(maps, "height", request); !status) return tl::unexpected(status.error());
   Permutation permutation;
   permutation.stage = request.stage;
   permutation.filter = request.filter;
@@ -134,6 +128,9 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
   for (const std::string& role : (*stage)->roles) permutation.roles[role] = request.technique;
   Result<PreparedProgram> prepared = prepare(registry, std::move(permutation), shader_target);
   if (!prepared) return tl::unexpected(prepared.error());
+  for (const MapSlot& slot : prepared->composed.maps) {
+    if (Status status = check_map(maps, slot.map, request); !status) return tl::unexpected(status.error());
+  }
 
   Job job;
   job.name = "render " + prepared->composed.key;

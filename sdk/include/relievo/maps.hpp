@@ -55,6 +55,12 @@ using MapSet = std::map<std::string, MapData, std::less<>>;
 /// The set that holds the height map alone.
 MapSet map_set(const HeightMap& height_map);
 
+/// The maps that a stage and the technique in its roles read, with whatever values of their axes; `technique` is empty
+/// for stages that trace nothing.
+/// Errors: "describe.unknown-stage", "describe.unknown-technique".
+Result<std::vector<std::string>> required_maps(const Registry& registry, std::string_view stage,
+                                               std::string_view technique);
+
 /// Bakes `map` and whatever it needs first into `maps`, which holds "height"; maps that are there already stay.
 /// `values` are keyed "map.parameter"; those of other owners are ignored.
 /// Errors: "describe.unknown-map", "compose.*", "compile.*", "backend.*"; "maps.non-finite" if the result is not

@@ -1,6 +1,7 @@
 /// Pictures of a scene: a mesh, a technique and a drawing stage as a Job.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
@@ -29,7 +30,13 @@ struct RenderResult {
   std::uint64_t degenerate_triangles = 0;  ///< drawn undisplaced
 };
 
-/// One Draw of the scene's mesh. `mesh` is checked and has one normal a position (scene_mesh does both).
+/// The bytes of the uniform block `Scene` (set 0, binding 1, std140) that every drawing stage reads: camera,
+/// displacement, material and lights. An engine writes them anew when its camera or lights have moved; the rest of the
+/// Job stays. Errors: "render.lights" for more than four.
+Result<std::vector<std::byte>> scene_block(const Scene& scene);
+
+/// One Draw of the scene's mesh. `mesh` is checked and has one normal a position (scene_mesh does both); `maps` holds
+/// the maps that the permutation reads (all of required_maps will do), else the error is "render.missing-map".
 Result<Job> make_render_job(const Registry& registry, const Scene& scene, const Mesh& mesh, const MapSet& maps,
                             const RenderRequest& request, std::string_view shader_target);
 

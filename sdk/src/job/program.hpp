@@ -15,10 +15,6 @@ Result<ComposedProgram> compose_known(const Registry& registry, Permutation perm
 /// Compiles a composed program for what a backend consumes.
 Result<PreparedProgram> prepare_composed(ComposedProgram composed, std::string_view shader_target);
 
-/// The maps that the roles' techniques and the stage need, in baking order.
-Result<std::vector<std::string>> required_maps(const Registry& registry, std::string_view stage,
-                                               std::string_view technique);
-
 Buffer make_buffer(std::string name, const void* data, std::size_t size);
 
 /// Adds a buffer to the job and binds it; returns its index.

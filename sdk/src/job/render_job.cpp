@@ -32,7 +32,7 @@ glm::vec3 to_vec3(const std::array<float, 3>& a) {
   return {a[0], a[1], a[2]};
 }
 
-SceneBlock scene_block(const Scene& scene) {
+SceneBlock make_scene_block(const Scene& scene) {
   SceneBlock block{};
   block.view_projection = view_projection(scene);
   block.eye = glm::vec4(to_vec3(scene.camera.position), 1);
@@ -88,7 +88,27 @@ Draw make_draw(const StageDescriptor& stage, const MeshBuffers& mesh, Job& job) 
   return draw;
 }
 
+Status check_map(const MapSet& maps, const std::string& map, const RenderRequest& request) {
+  if (maps.contains(map)) return {};
+  return fail(ErrorCode::usage, "render.missing-map",
+              fmt::format("technique '{}' in stage '{}' reads the map '{}', which the set of maps lacks; expected it "
+                          "baked (bake_map)",
+                          request.technique, request.stage, map));
+}
+
 }  // namespace
+
+Result<std::vector<std::byte>> scene_block(const Scene& scene) {
+  if (scene.lights.size() > most_lights) {
+    return fail(
+        ErrorCode::usage, "render.lights",
+        fmt::format("the scene has {} lights; the drawing stages take at most {}", scene.lights.size(), most_lights),
+        scene.file);
+  }
+  SceneBlock block = make_scene_block(scene);
+  const auto* bytes = reinterpret_cast<const std::byte*>(&block);
+  return std::vector<std::byte>(bytes, bytes + sizeof(block));
+}
 
 Result<Job> make_render_job(const Registry& registry, const Scene& scene, const Mesh& mesh, const MapSet& maps,
                             const RenderRequest& request, std::string_view shader_target) {
@@ -98,12 +118,7 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
     return fail(ErrorCode::usage, "render.stage",
                 "stage '" + request.stage + "' draws nothing; expected one that has a mesh, such as 'surface'");
   }
-  if (scene.lights.size() > most_lights) {
-    return fail(
-        ErrorCode::usage, "render.lights",
-        fmt::format("the scene has {} lights; the drawing stages take at most {}", scene.lights.size(), most_lights),
-        scene.file);
-  }
+  if (Status status = check_map(maps, "height", request); !status) return tl::unexpected(status.error());
   Permutation permutation;
   permutation.stage = request.stage;
   permutation.filter = request.filter;
@@ -113,6 +128,9 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
   for (const std::string& role : (*stage)->roles) permutation.roles[role] = request.technique;
   Result<PreparedProgram> prepared = prepare(registry, std::move(permutation), shader_target);
   if (!prepared) return tl::unexpected(prepared.error());
+  for (const MapSlot& slot : prepared->composed.maps) {
+    if (Status status = check_map(maps, slot.map, request); !status) return tl::unexpected(status.error());
+  }
 
   Job job;
   job.name = "render " + prepared->composed.key;
@@ -121,8 +139,9 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
   Draw draw = make_draw(**stage, make_mesh_buffers(mesh, scene.displacement.units, tessellation), job);
   bind_maps(prepared->composed, maps, job, draw.resources);
   bind_parameters(prepared->composed, job, draw.resources);
-  SceneBlock block = scene_block(scene);
-  bind_buffer(0, scene_binding, make_buffer("Scene", &block, sizeof(block)), job, draw.resources);
+  Result<std::vector<std::byte>> block = scene_block(scene);
+  if (!block) return tl::unexpected(block.error());
+  bind_buffer(0, scene_binding, make_buffer("Scene", block->data(), block->size()), job, draw.resources);
   keep_contract(prepared->program, draw.resources);
   int color =
       add_target(job, "color", request.aov == Aov::color ? Format::rgba8_unorm : Format::rgba32_float, scene.image);

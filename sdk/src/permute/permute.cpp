@@ -193,37 +193,55 @@ class Run {
               [](const Group& a, const Group& b) { return std::tie(a.source, a.key) < std::tie(b.source, b.key); });
   }
 
-  /// What the cache has goes into the archive at once.
+  /// What the cache gave for a group: its program, and that program's image where nobody had asked for it before.
+  struct Loaded {
+    std::optional<CacheKey> program;
+    std::optional<ProgramImage> image;
+  };
+
+  Loaded load(const Group& group) const {
+    Loaded loaded;
+    const std::optional<CacheKey> program = from_payload(options_.cache->load(group.key));
+    if (!program || numbers_.contains(*program)) return {program, {}};
+    const std::optional<std::string> bytes = options_.cache->load(*program);
+    if (!bytes) return {};
+    Result<ProgramImage> image = read_program(*bytes);
+    if (!image) return {};
+    return {program, *std::move(image)};
+  }
+
+  /// What the cache has goes into the archive at once, in the order of the permutations: when it has everything, the
+  /// archive need not be put in order in the end.
   Status load_all() {
     if (!options_.cache) return {};
-    std::mutex mutex;
-    Status status;
-    run_parallel(groups_.size(), threads_, [&](std::size_t i) {
-      const std::optional<CacheKey> program = from_payload(options_.cache->load(groups_[i].key));
-      if (!program) return;
-      {
-        std::scoped_lock lock(mutex);
-        if (const auto known = numbers_.find(*program); known != numbers_.end()) {
-          groups_[i].program = known->second;
-          return;
-        }
+    std::vector<Group*> order;
+    for (Group& group : groups_) order.push_back(&group);
+    std::sort(order.begin(), order.end(), [](const Group* a, const Group* b) { return a->first < b->first; });
+    constexpr std::size_t chunk = 64;
+    for (std::size_t start = 0; start < order.size(); start += chunk) {
+      const std::size_t count = std::min(chunk, order.size() - start);
+      std::vector<Loaded> loaded(count);
+      run_parallel(count, threads_, [&](std::size_t i) { loaded[i] = load(*order[start + i]); });
+      for (std::size_t i = 0; i < count; ++i) {
+        if (Status status = take(loaded[i], *order[start + i]); !status) return status;
       }
-      const std::optional<std::string> bytes = options_.cache->load(*program);
-      if (!bytes) return;
-      const Result<ProgramImage> image = read_program(*bytes);
-      if (!image) return;
-      const Result<std::uint32_t> number = writer_->add_program(*image);
-      std::scoped_lock lock(mutex);
-      if (!number) {
-        if (status) status = tl::unexpected(number.error());
-        return;
-      }
-      groups_[i].program = *number;
-      numbers_.emplace(*program, *number);
-    });
-    for (const Group& group : groups_) summary_.from_cache += group.program ? 1 : 0;
+    }
     advance(summary_.from_cache);
-    return status;
+    return {};
+  }
+
+  Status take(const Loaded& loaded, Group& group) {
+    if (!loaded.program) return {};
+    auto known = numbers_.find(*loaded.program);
+    if (known == numbers_.end()) {
+      if (!loaded.image) return {};
+      const Result<std::uint32_t> number = writer_->add_program(*loaded.image);
+      if (!number) return tl::unexpected(number.error());
+      known = numbers_.emplace(*loaded.program, *number).first;
+    }
+    group.program = known->second;
+    ++summary_.from_cache;
+    return {};
   }
 
   Status compile_all() {

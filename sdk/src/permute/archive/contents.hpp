@@ -45,10 +45,12 @@ struct Contents {
   }
 };
 
-/// The bytes before the blobs, and which blobs of the spool follow in what order.
+/// The bytes before and after the blobs, and which blobs of the spool lie between in what order.
 struct Layout {
-  std::string index;
+  std::string header, index;
+  std::uint64_t index_offset = 0;
   std::vector<std::uint32_t> blobs;
+  bool is_spool = false;  ///< the spool has exactly these blobs, where an archive has them
 };
 
 /// Depends on which permutation has which program alone, not on how things are numbered in `contents`.

@@ -57,16 +57,51 @@ bool File::close() {
   return ::close(std::exchange(descriptor_, -1)) == 0;
 }
 
-File create_beside(const fs::path& path, std::string_view suffix, fs::path& name) {
+namespace {
+
+/// A name beside `path` that nobody else has, most likely.
+fs::path fresh_name(const fs::path& path, std::string_view suffix) {
   static std::atomic<unsigned> counter{0};
-  for (int attempt = 0; attempt < 100; ++attempt) {
-    const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
-    name = path;
-    name += fmt::format(".{:x}-{:x}-{}{}", ::getpid(), static_cast<unsigned long long>(now), counter++, suffix);
+  const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+  fs::path name = path;
+  name += fmt::format(".{:x}-{:x}-{}{}", ::getpid(), static_cast<unsigned long long>(now), counter++, suffix);
+  return name;
+}
+
+constexpr int kMostAttempts = 100;
+
+}  // namespace
+
+File create_beside(const fs::path& path, std::string_view suffix, fs::path& name) {
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    name = fresh_name(path, suffix);
     const int descriptor = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0 || errno != EEXIST) return File(descriptor);
   }
   return {};
+}
+
+File create_unnamed(const fs::path& path, bool& can_be_named) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  File file(::open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0666));
+  can_be_named = static_cast<bool>(file);
+  if (can_be_named) return file;
+  // Not every file system can: a name that is taken away at once does the same, but for good.
+  fs::path name;
+  file = create_beside(path, ".spool", name);
+  std::error_code ignored;
+  if (file) fs::remove(name, ignored);
+  return file;
+}
+
+bool give_name(const File& file, const fs::path& path, std::string_view suffix, fs::path& name) {
+  const std::string unnamed = fmt::format("/proc/self/fd/{}", file.descriptor());
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    name = fresh_name(path, suffix);
+    if (::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
+    if (errno != EEXIST) return false;
+  }
+  return false;
 }
 
 tl::unexpected<Error> write_failure(const fs::path& path) {

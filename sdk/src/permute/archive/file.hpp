@@ -38,6 +38,14 @@ class File {
 /// A new, empty file beside `path`, of a name that nobody else has; `name` receives it.
 File create_beside(const std::filesystem::path& path, std::string_view suffix, std::filesystem::path& name);
 
+/// A file in the folder of `path` that vanishes with the process, however that ends. `can_be_named`: until it is
+/// named.
+File create_unnamed(const std::filesystem::path& path, bool& can_be_named);
+
+/// Names an unnamed file, with a name as `create_beside` would give; false, with errno, when that fails.
+bool give_name(const File& file, const std::filesystem::path& path, std::string_view suffix,
+               std::filesystem::path& name);
+
 /// "'a.rva' cannot be written: No space left on device [archive.write]", from errno.
 tl::unexpected<Error> write_failure(const std::filesystem::path& path);
 

@@ -45,9 +45,9 @@ struct Header {
   std::array<char, 8> magic;
   std::uint32_t version;
   std::uint32_t endian_mark;
-  std::uint64_t index_hash;  ///< XXH3-64 of what follows this field, up to `index_size`
+  std::uint64_t index_hash;  ///< XXH3-64 of the rest of this header and of the index
   std::uint64_t file_size;
-  std::uint64_t index_size;  ///< bytes of this header and the sections; the blobs' bytes begin here
+  std::uint64_t index_offset;  ///< of the sections, which end the file; the blobs lie before them, after this header
   std::uint32_t section_count;
   std::uint32_t reserved;  ///< 0
   std::array<SectionRecord, kSectionCount> sections;
@@ -88,6 +88,9 @@ static_assert(sizeof(Header) == 48 + 16 * kSectionCount && sizeof(BlobRecord) ==
 constexpr std::uint64_t aligned(std::uint64_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
+
+/// Of two pieces as if they were one.
+std::uint64_t hash64(std::string_view first, std::string_view second);
 
 inline std::uint64_t hash64(std::string_view bytes) {
   return XXH3_64bits(bytes.data(), bytes.size());

@@ -35,10 +35,12 @@ Status check_header(std::span<const std::byte> file, const Header& header, const
   }
   if (header.file_size != file.size())
     return format_failure(name, fmt::format("it has {} bytes; expected {}", file.size(), header.file_size));
-  if (header.index_size < sizeof(Header) || header.index_size > file.size() || header.index_size % kAlignment != 0)
-    return format_failure(name, fmt::format("its index has {} bytes", header.index_size));
-  const std::string_view bytes(reinterpret_cast<const char*>(file.data()), static_cast<std::size_t>(header.index_size));
-  if (hash64(bytes.substr(kHashedFrom)) != header.index_hash)
+  if (header.index_offset < sizeof(Header) || header.index_offset > file.size() ||
+      header.index_offset % kAlignment != 0)
+    return format_failure(name, fmt::format("its index is at {}", header.index_offset));
+  const std::string_view bytes(reinterpret_cast<const char*>(file.data()), file.size());
+  const std::string_view head = bytes.substr(kHashedFrom, sizeof(Header) - kHashedFrom);
+  if (hash64(head, bytes.substr(static_cast<std::size_t>(header.index_offset))) != header.index_hash)
     return format_failure(name, "the hash of its index differs");
   return {};
 }
@@ -47,17 +49,18 @@ bool is_zero(std::span<const std::byte> bytes) {
   return std::ranges::all_of(bytes, [](std::byte byte) { return byte == std::byte{0}; });
 }
 
-/// The sections lie one after the other, aligned, with zeros between, and fill the index.
+/// The sections lie one after the other, aligned, with zeros between, and end the file.
 bool sections_fit(std::span<const std::byte> file, const Header& header) {
   if (header.section_count != kSectionCount || header.reserved != 0) return false;
-  std::uint64_t expected = sizeof(Header);
+  std::uint64_t expected = header.index_offset;
   for (const SectionRecord& section : header.sections) {
-    if (section.offset != expected || section.size > header.index_size - expected) return false;
+    if (section.offset != expected || section.size > file.size() - expected) return false;
     const std::uint64_t end = expected + section.size;
-    expected = aligned(end);  // at most index_size, which is aligned
+    expected = aligned(end);
+    if (expected > file.size()) return false;
     if (!is_zero(file.subspan(end, expected - end))) return false;
   }
-  return expected == header.index_size;
+  return expected == file.size();
 }
 
 bool view_sections(const Header& header, Index& index) {
@@ -99,6 +102,7 @@ Result<Index> read_index(std::span<const std::byte> file, const std::string& nam
   if (Status status = check_header(file, header, name); !status) return tl::unexpected(status.error());
   Index index;
   index.file = file;
+  index.blobs_end = header.index_offset;
   if (!sections_fit(file, header) || !view_sections(header, index))
     return format_failure(name, "its sections do not fit");
   if (const std::string fault = fault_of(index); !fault.empty()) return format_failure(name, fault);

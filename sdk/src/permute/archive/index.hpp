@@ -16,6 +16,7 @@ namespace relievo::archive {
 /// Views into the mapped file; what is not a view was decoded while it was checked.
 struct Index {
   std::span<const std::byte> file;
+  std::uint64_t blobs_end = 0;  ///< where the index begins
   std::string_view text;
   std::span<const StringRecord> strings;
   std::span<const AxisRecord> axis_records;

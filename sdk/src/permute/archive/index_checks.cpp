@@ -167,15 +167,13 @@ std::string fault_of_absences(const Index& index) {
 }
 
 std::string fault_of_blobs(const Index& index) {
-  // The last section: the index ends with it.
-  const auto* end_of_index = reinterpret_cast<const std::byte*>(index.blobs.data() + index.blobs.size());
-  std::uint64_t expected = aligned(static_cast<std::uint64_t>(end_of_index - index.file.data()));
+  std::uint64_t expected = sizeof(Header);
   for (const BlobRecord& blob : index.blobs) {
-    if (blob.offset != expected || blob.size > index.file.size() - expected) return "a blob does not fit";
+    if (blob.offset != expected || blob.size > index.blobs_end - expected) return "a blob does not fit";
     expected = aligned(expected + blob.size);
-    if (expected > index.file.size()) return "a blob does not fit";
+    if (expected > index.blobs_end) return "a blob does not fit";
   }
-  return expected == index.file.size() ? std::string() : "bytes follow its last blob";
+  return expected == index.blobs_end ? std::string() : "bytes follow its last blob";
 }
 
 }  // namespace relievo::archive

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <numeric>
 #include <set>
 
@@ -136,13 +137,20 @@ void add_absences(const Contents& contents, Tables& tables, const Renumbering& a
   }
 }
 
-void add_blobs(std::span<const SpooledBlob> spooled, std::span<const std::uint32_t> order, std::uint64_t offset,
-               Tables& tables) {
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const SpooledBlob& blob = spooled[order[i]];
-    tables.blobs[i] = {offset, blob.size, blob.hash};
+/// Returns where the last one ends.
+std::uint64_t add_blobs(std::span<const SpooledBlob> spooled, std::span<const std::uint32_t> order, Tables& tables) {
+  std::uint64_t offset = sizeof(Header);
+  for (const std::uint32_t number : order) {
+    const SpooledBlob& blob = spooled[number];
+    tables.blobs.push_back({offset, blob.size, blob.hash});
     offset = aligned(offset + blob.size);
   }
+  return offset;
+}
+
+bool is_in_place(std::span<const SpooledBlob> spooled, const Tables& tables) {
+  return std::ranges::equal(spooled, tables.blobs,
+                            [](const SpooledBlob& a, const BlobRecord& b) { return a.offset == b.offset; });
 }
 
 /// Calls `each` with the section's records, in the order of the file.
@@ -163,32 +171,37 @@ void for_each_section(const Tables& t, const Each& each) {
   each(std::span(t.blobs));
 }
 
-Header make_header(const Tables& tables) {
+Header make_header(const Tables& tables, std::uint64_t index_offset) {
   Header header{};
   std::ranges::copy(kMagic, header.magic.begin());
   header.version = kVersion;
   header.endian_mark = kEndianMark;
   header.section_count = kSectionCount;
-  std::uint64_t offset = sizeof header;
+  header.index_offset = index_offset;
+  std::uint64_t offset = index_offset;
   std::size_t section = 0;
   for_each_section(tables, [&](auto records) {
     header.sections[section++] = {offset, records.size_bytes()};
     offset = aligned(offset + records.size_bytes());
   });
-  header.index_size = offset;
+  header.file_size = offset;
   return header;
 }
 
 std::string index_bytes(const Header& header, const Tables& tables) {
-  std::string bytes(static_cast<std::size_t>(header.index_size), '\0');
-  std::memcpy(bytes.data(), &header, sizeof header);
+  std::string bytes(static_cast<std::size_t>(header.file_size - header.index_offset), '\0');
   std::size_t section = 0;
   for_each_section(tables, [&](auto records) {
-    const std::uint64_t offset = header.sections[section++].offset;
+    const std::uint64_t offset = header.sections[section++].offset - header.index_offset;
     if (!records.empty()) std::memcpy(bytes.data() + offset, records.data(), records.size_bytes());
   });
-  const std::uint64_t hash = hash64(std::string_view(bytes).substr(kHashedFrom));
-  std::memcpy(bytes.data() + offsetof(Header, index_hash), &hash, sizeof hash);
+  return bytes;
+}
+
+std::string header_bytes(Header header, std::string_view index) {
+  std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
+  header.index_hash = hash64(std::string_view(bytes).substr(kHashedFrom), index);
+  std::memcpy(bytes.data() + offsetof(Header, index_hash), &header.index_hash, sizeof header.index_hash);
   return bytes;
 }
 
@@ -208,12 +221,23 @@ Result<Layout> lay_out(const Contents& contents, std::span<const SpooledBlob> sp
       targets.size() > 0xffff) {
     return fail(ErrorCode::io, "archive.write", "the archive has more than 4294967294 records of a kind");
   }
-  tables.blobs.resize(blobs.order().size());
-  Header header = make_header(tables);
-  add_blobs(spooled, blobs.order(), header.index_size, tables);
-  header.file_size =
-      tables.blobs.empty() ? header.index_size : aligned(tables.blobs.back().offset + tables.blobs.back().size);
-  return Layout{index_bytes(header, tables), blobs.order()};
+  const std::uint64_t index_offset = add_blobs(spooled, blobs.order(), tables);
+  const Header header = make_header(tables, index_offset);
+  Layout layout;
+  layout.index = index_bytes(header, tables);
+  layout.header = header_bytes(header, layout.index);
+  layout.index_offset = index_offset;
+  layout.blobs = blobs.order();
+  layout.is_spool = is_in_place(spooled, tables);
+  return layout;
+}
+
+std::uint64_t hash64(std::string_view first, std::string_view second) {
+  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
+  XXH3_64bits_reset(state.get());
+  XXH3_64bits_update(state.get(), first.data(), first.size());
+  XXH3_64bits_update(state.get(), second.data(), second.size());
+  return XXH3_64bits_digest(state.get());
 }
 
 }  // namespace relievo::archive

@@ -57,11 +57,24 @@ class Output {
 
 bool write(File& file, const Layout& layout, const Spool& spool) {
   Output output(file);
-  if (!output.append(layout.index)) return false;
+  if (!output.append(layout.header)) return false;
   for (const std::uint32_t blob : layout.blobs) {
     if (!output.append(spool.file(), spool.blobs()[blob])) return false;
   }
-  return output.flush() && file.close();
+  return output.append(layout.index) && output.flush() && file.close();
+}
+
+/// The spool has the blobs where they belong: it lacks only what is around them, and a name.
+bool complete(const Spool& spool, const Layout& layout, const fs::path& path, fs::path& temporary) {
+  return spool.file().write_at(0, layout.header) && spool.file().write_at(layout.index_offset, layout.index) &&
+         give_name(spool.file(), path, ".tmp", temporary);
+}
+
+/// False, with errno, when the archive could not be written under a temporary name.
+bool write_beside(const fs::path& path, const Layout& layout, const Spool& spool, fs::path& temporary) {
+  if (layout.is_spool && spool.can_be_named() && complete(spool, layout, path, temporary)) return true;
+  File file = create_beside(path, ".tmp", temporary);
+  return file && write(file, layout, spool);
 }
 
 }  // namespace
@@ -78,17 +91,15 @@ Status check_replaceable(const fs::path& path) {
 
 Status replace(const fs::path& path, const Layout& layout, const Spool& spool) {
   fs::path temporary;
-  File file = create_beside(path, ".tmp", temporary);
-  if (!file) return write_failure(path);
   Status status;
-  if (!write(file, layout, spool)) status = write_failure(path);
+  if (!write_beside(path, layout, spool, temporary)) status = write_failure(path);
   std::error_code failed, ignored;
   if (status) fs::rename(temporary, path, failed);
   if (failed) {
     errno = failed.value();
     status = write_failure(path);
   }
-  if (!status) fs::remove(temporary, ignored);
+  if (!status && !temporary.empty()) fs::remove(temporary, ignored);
   return status;
 }
 

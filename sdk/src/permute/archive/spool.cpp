@@ -14,11 +14,8 @@ ContentHash content_hash(std::string_view bytes) {
 Result<Spool> Spool::create(const std::filesystem::path& path) {
   Spool spool;
   spool.path_ = path;
-  std::filesystem::path name;
-  spool.file_ = create_beside(path, ".spool", name);
+  spool.file_ = create_unnamed(path, spool.can_be_named_);
   if (!spool.file_) return write_failure(path);
-  std::error_code ignored;
-  std::filesystem::remove(name, ignored);
   return spool;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "permute/archive/file.hpp"
+#include "permute/archive/format.hpp"
 
 namespace relievo::archive {
 
@@ -38,13 +39,16 @@ class Spool {
 
   const std::vector<SpooledBlob>& blobs() const { return blobs_; }
   const File& file() const { return file_; }
+  /// Whether `give_name` works on this file system.
+  bool can_be_named() const { return can_be_named_; }
 
  private:
   std::filesystem::path path_;
   File file_;
   std::vector<SpooledBlob> blobs_;
   std::unordered_map<ContentHash, std::uint32_t, ContentHasher> numbers_;
-  std::uint64_t end_ = 0;
+  std::uint64_t end_ = sizeof(Header);  ///< so that the spool may become the archive
+  bool can_be_named_ = false;
 };
 
 }  // namespace relievo::archive

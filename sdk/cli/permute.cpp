@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "common.hpp"
+#include "permute_sources.hpp"
 #include "permute_stamp.hpp"
 #include "relievo/permute.hpp"
 
@@ -13,7 +14,8 @@ namespace relievo::cli {
 namespace {
 
 struct PermuteArguments {
-  std::string manifest, output = ".", shard, cache, depfile, costs;
+  std::string manifest, output = ".", shard, cache, depfile, costs, sources;
+  std::size_t sample = 0;
   std::vector<std::string> explain, merge;
   std::uint64_t cache_megabytes = 2048;
   unsigned jobs = 0;
@@ -261,7 +263,8 @@ Status run_permute(const Context& context, const PermuteArguments& arguments) {
   const Result<Project> project = load_project(context, arguments.manifest);
   if (!project) return tl::unexpected(project.error());
   const Paths paths = paths_of(arguments, project->manifest, *shard);
-  const bool compiles = !arguments.list && !arguments.dry_run && arguments.explain.empty() && arguments.merge.empty();
+  const bool compiles = !arguments.list && !arguments.dry_run && arguments.explain.empty() && arguments.merge.empty() &&
+                        arguments.sources.empty();
   if (compiles && !arguments.force &&
       is_up_to_date(paths.stamp, paths.archive, project->manifest, project->registry, arguments.shard)) {
     fmt::print("{} is up to date\n", paths.archive);
@@ -281,6 +284,8 @@ Status run_permute(const Context& context, const PermuteArguments& arguments) {
     fmt::print("{}\n", *text);
     return {};
   }
+  if (!arguments.sources.empty())
+    return write_sources(project->registry, project->manifest, *plan, arguments.sources, arguments.sample);
   if (arguments.dry_run) {
     print_plan(context, *plan);
     return {};
@@ -312,6 +317,9 @@ void add_permute(CLI::App& app, Context& context) {
   command->add_flag("--list", arguments->list, "List the permutations, and which are pruned");
   command->add_flag("--dry-run", arguments->dry_run, "Count the permutations, and what pruned how many");
   command->add_option("--explain", arguments->explain, "axis=value …: why that permutation is kept, pruned or shared");
+  command->add_option("--sources", arguments->sources,
+                      "Write the composed GLSL below this folder, and compile nothing");
+  command->add_option("--sample", arguments->sample, "Of so many permutations, evenly spread; 0 = all");
   command->add_option("--MF", arguments->depfile, "Write a depfile of this name");
 }
 

@@ -30,7 +30,7 @@ std::string example(const std::string& heading) {
 TEST(DescriptorDocs, ShowATechniqueThatParses) {
   const auto technique = parse_technique(example("technique.toml"), "techniques/relief/technique.toml");
   ASSERT_TRUE(technique) << format(technique.error());
-  EXPECT_EQ(technique->parameters.size(), 2u);
+  EXPECT_EQ(technique->parameters.size(), 3u);
 }
 
 TEST(DescriptorDocs, ShowAMapThatParses) {

@@ -1,6 +1,9 @@
 /// Manifests, and the permutations that they ask for.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
+
 #include "relievo/permute.hpp"
 
 namespace relievo::test {
@@ -179,6 +182,28 @@ TEST(PermutationPlan, ExplainsWhatIsKeptPrunedAndShared) {
   const std::vector<std::pair<std::string, std::string>> unknown = {{"stagee", "prism"}};
   EXPECT_EQ(explain(registry(), manifest, *plan, unknown).error().message,
             "the manifest has no axis 'stagee'; did you mean 'stage'?");
+}
+
+TEST(Manifest, OfThePageIsOne) {
+  std::ifstream file(RELIEVO_SOURCE_DIR "/docs/permutations.md");
+  std::ostringstream page;
+  page << file.rdbuf();
+  const std::string text = page.str();
+  const std::size_t fence = text.find("```toml\n") + 8;
+  const auto manifest = parse_manifest(text.substr(fence, text.find("```\n", fence) - fence), "docs/permutations.md");
+  ASSERT_TRUE(manifest) << format(manifest.error());
+  const auto plan = plan_permutations(registry(), *manifest);
+  ASSERT_TRUE(plan) << format(plan.error());
+  // relief: 2 addresses × 2 step counts × (2 depth writes on surfaces, 1 in prisms); parallax the same without counts.
+  EXPECT_EQ(plan->permutations.size(), 2u * 2u * 3u + 2u * 3u);
+}
+
+TEST(Manifest, OfTheExampleAsksForTenThousand) {
+  const auto manifest = load_manifest(RELIEVO_SOURCE_DIR "/examples/permutations/relievo.toml");
+  ASSERT_TRUE(manifest) << format(manifest.error());
+  const auto plan = plan_permutations(registry(), *manifest);
+  ASSERT_TRUE(plan) << format(plan.error());
+  EXPECT_GE(plan->permutations.size(), 10000u);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// Any module of a user, with any files beside it, composed into every stage: shaders, or an error with a place.
+/// Any module of a user, with any files beside it, composed into a stage: shaders, or an error with a place.
 /// The input is the module, then files: each begins with a line "%% name".
 #include <algorithm>
 #include <array>
@@ -107,11 +107,10 @@ std::string fault_of(const Result<ComposedProgram>& program, const SourceTree& t
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static Registry registry = registry_with_technique();
   const FuzzedFiles files(registry.sources, {reinterpret_cast<const char*>(data), size});
-  for (const std::string_view stage : {"ray", "surface"}) {
-    Permutation permutation;
-    permutation.stage = stage;
-    permutation.roles["view"] = "fuzzed";
-    fuzz::expect_none(fault_of(compose(registry, permutation), registry.sources));
-  }
+  Permutation permutation;
+  // The larger stage is slow to compose and differs little: one input in eight.
+  permutation.stage = size % 8 == 0 ? "surface" : "ray";
+  permutation.roles["view"] = "fuzzed";
+  fuzz::expect_none(fault_of(compose(registry, permutation), registry.sources));
   return 0;
 }

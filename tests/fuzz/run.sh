@@ -22,8 +22,11 @@ for name in "${names[@]}"; do
   found=$build/corpus/$name
   log=$build/fuzz_$name.log
   mkdir -p "$found"
+  dictionary=tests/fuzz/dictionaries/$name.dict
+  words=()
+  [ -f "$dictionary" ] && words=(-dict="$dictionary")
   # The packaged compilers allocate for good; -timeout catches what hangs.
-  if $build/bin/fuzz_"$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
+  if $build/bin/fuzz_"$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 "${words[@]}" \
       -artifact_prefix=$build/findings/"$name"- "$found" tests/fuzz/corpus/"$name" >"$log" 2>&1; then
     result=ok
   else

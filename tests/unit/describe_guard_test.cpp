@@ -59,6 +59,14 @@ TEST(TomlGuard, RejectsCharactersOutsideAsciiWhereTomlHasNone) {
   }
 }
 
+TEST(TomlGuard, RejectsThemInQuotesThatTomlTakesForPartOfAValue) {
+  for (const char* text : {"a = 1\"\u00a7\"\n", "a = [1'\u00a7']\n", "a = true\"\"\"\u00a7\"\"\"\n",
+                           "a = 1.\"\u00a7\"\n", "a = \"\"'\u00a7'\n"}) {
+    EXPECT_FALSE(guard_toml(text, "f")) << text;
+  }
+  EXPECT_TRUE(guard_toml("a=[\"\u00a7\",'\u00a7']\nb={c='\u00a7'}\n\"\u00a7\".'d' = 1\n", "f"));
+}
+
 TEST(TomlGuard, AcceptsThemInStringsCommentsAndAsAByteOrderMark) {
   for (const char* text : {"a = \"\u00e9\" # \u00e9\n", "a = '\u00e9'\n", "\uFEFFa = 1\n", "\"\u00e9\" = 1\n",
                            "a = \"\"\"\u00e9\\\n  x\u00e9\"\"\"\n", "a = '''\\\u00e9'''\n"}) {

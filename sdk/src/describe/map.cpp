@@ -126,11 +126,12 @@ namespace {
 Status check_host_parameter(const MapDescriptor& map, std::string_view name, int most) {
   auto found = std::find_if(map.parameters.begin(), map.parameters.end(),
                             [&](const Parameter& parameter) { return parameter.name == name; });
-  if (found != map.parameters.end() && found->is_integer && found->minimum >= 1 && found->maximum <= most) return {};
+  const bool is_there = found != map.parameters.end();
+  if (is_there && found->is_integer && found->minimum >= 1 && found->maximum <= most) return {};
   return fail(
       ErrorCode::usage, "describe.map-parameter",
       fmt::format("map {} lacks the integer parameter {} with values in 1 to {}", quote(map.name), quote(name), most),
-      map.file);
+      map.file, is_there ? found->line : 1, 1);
 }
 
 }  // namespace

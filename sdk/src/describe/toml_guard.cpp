@@ -45,9 +45,16 @@ class TomlGuard {
     if ((c == '[' || c == '{') && ++brackets_ > max_brackets) report("brackets nest more than 16 deep");
   }
 
+  /// Whether a string can begin here. toml++ reads a quote right behind a value's characters as one of them.
+  bool opens_string() const {
+    constexpr std::string_view openers = " \t\r\n=,[{";
+    return at_ == 0 || openers.find(text_[at_ - 1]) != openers.npos || text_.substr(0, at_) == "\xEF\xBB\xBF";
+  }
+
   /// A basic or literal string, of one or of many lines.
   void skip_string() {
     const char mark = text_[at_];
+    const bool is_string = opens_string();
     const std::string three(3, mark);
     const bool is_long = text_.substr(at_, 3) == three;
     at_ += is_long ? 3 : 1;
@@ -62,6 +69,9 @@ class TomlGuard {
         ++at_;
         return;
       } else {
+        if (!is_string && is_outside_ascii(text_[at_])) {
+          report("a character outside ASCII stands in quotes that follow another character; put a space before them");
+        }
         ++at_;
       }
     }

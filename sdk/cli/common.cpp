@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "mesh_file.hpp"
+#include "permute/archive/file.hpp"
 
 namespace relievo::cli {
 
@@ -170,22 +171,17 @@ Status write_text(const std::string& path, const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), stdout);
     return {};
   }
-  std::string temporary = fmt::format("{}.{}.tmp", path, getpid());
-  {
-    std::ofstream file(temporary, std::ios::binary);
-    file << text;
-    file.flush();
-    if (!file) {
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
-      return fail(ErrorCode::io, "cli.write", fmt::format("'{}' cannot be written", path), path);
-    }
+  archive::sweep_beside(path);
+  std::filesystem::path temporary;
+  const archive::File file = archive::create_beside(path, ".tmp", temporary);
+  std::error_code error, ignored;
+  if (!file || !file.write_at(0, text) || !file.settle()) {
+    error.assign(errno, std::generic_category());
+  } else {
+    std::filesystem::rename(temporary, path, error);
   }
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
   if (!error) return {};
-  std::error_code ignored;
-  std::filesystem::remove(temporary, ignored);
+  if (file) std::filesystem::remove(temporary, ignored);
   return fail(ErrorCode::io, "cli.write", fmt::format("'{}' cannot be written: {}", path, error.message()), path);
 }
 

@@ -2,9 +2,13 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <fstream>
+#include <set>
+#include <sstream>
 #include <thread>
 
 #include "common.hpp"
+#include "permute_emit.hpp"
+#include "permute_merge.hpp"
 #include "permute_sources.hpp"
 #include "permute_stamp.hpp"
 #include "relievo/permute.hpp"
@@ -14,11 +18,11 @@ namespace relievo::cli {
 namespace {
 
 struct PermuteArguments {
-  std::string manifest, output = ".", shard, cache, depfile, costs, sources;
+  std::string manifest, output = ".", shard, cache, depfile, costs, sources, emit;
   std::size_t sample = 0;
   std::vector<std::string> explain, merge;
   std::uint64_t cache_megabytes = 2048;
-  unsigned jobs = 0;
+  unsigned jobs = 0, shards = 0;
   bool list = false, dry_run = false, keep_going = false, no_cache = false, force = false;
 };
 
@@ -42,10 +46,17 @@ Result<std::vector<std::pair<std::string, std::string>>> parse_assignment(const 
   return assignment;
 }
 
+std::string read_all(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
 /// Costs are lines of "closure seconds"; what is no such line does not matter: they only balance.
-ClosureCosts read_costs(const std::filesystem::path& path) {
+ClosureCosts read_costs(const std::string& text) {
   ClosureCosts costs;
-  std::ifstream file(path);
+  std::istringstream file(text);
   std::string closure;
   for (double seconds = 0; file >> closure >> seconds;) {
     if (seconds >= 0) costs[closure] = seconds;
@@ -63,16 +74,29 @@ std::string write_costs(const ClosureCosts& costs) {
 struct Project {
   Manifest manifest;
   Registry registry;
+  std::string costs;  ///< the text of --costs
+  Fingerprint fingerprint;
 };
 
-Result<Project> load_project(const Context& context, const std::string& path) {
-  Result<Manifest> manifest = load_manifest(path);
+/// The text of --costs. Shards that see different costs are no parts of one whole, so a missing file is an error.
+Result<std::string> load_costs(const std::string& path) {
+  if (path.empty() || std::ifstream(path).good()) return read_all(path);
+  return fail(ErrorCode::io, "permute.costs",
+              fmt::format("the costs '{}' cannot be read; the .costs file of an earlier run is expected", path), path);
+}
+
+Result<Project> load_project(const Context& context, const PermuteArguments& arguments) {
+  const std::string text = read_all(arguments.manifest);
+  Result<Manifest> manifest = load_manifest(arguments.manifest);
   if (!manifest) return tl::unexpected(manifest.error());
   std::vector<std::filesystem::path> folders = manifest->folders;
   folders.insert(folders.end(), context.folders.begin(), context.folders.end());
   Result<Registry> registry = load_registry(folders);
   if (!registry) return tl::unexpected(registry.error());
-  return Project{*std::move(manifest), *std::move(registry)};
+  Result<std::string> costs = load_costs(arguments.costs);
+  if (!costs) return tl::unexpected(costs.error());
+  Fingerprint hashes = fingerprint(text, *registry, arguments.shard, *costs);
+  return Project{*std::move(manifest), *std::move(registry), *std::move(costs), std::move(hashes)};
 }
 
 void list_plan(const Context& context, const PermutationPlan& plan) {
@@ -166,9 +190,9 @@ Result<std::unique_ptr<Cache>> open_cache_of(const PermuteArguments& arguments) 
   return open_cache(options);
 }
 
-std::string depfile_text(const Project& project, const std::string& archive, const PermuteSummary& summary) {
+std::string depfile_text(const Project& project, const std::string& archive, const std::vector<std::string>& sources) {
   std::vector<std::string> files = {project.manifest.file};
-  for (const std::string& source : summary.files) {
+  for (const std::string& source : sources) {
     const auto origin = project.registry.origins.find(source);
     if (origin != project.registry.origins.end()) files.push_back(origin->second);
   }
@@ -198,16 +222,23 @@ struct Paths {
 };
 
 Paths paths_of(const PermuteArguments& arguments, const Manifest& manifest, const Shard& shard) {
-  std::string base = fmt::format("{}/{}", arguments.output, manifest.name);
-  if (shard.count > 1) base += fmt::format(".{}-of-{}", shard.index + 1, shard.count);
+  const std::string base =
+      fmt::format("{}/{}", arguments.output,
+                  arguments.shard.empty() ? manifest.name : shard_base(manifest.name, shard.index, shard.count));
   return {base + ".rla", base + ".costs", base + ".stamp"};
+}
+
+Status write_depfile(const PermuteArguments& arguments, const Project& project, const Paths& paths,
+                     const std::vector<std::string>& sources) {
+  if (arguments.depfile.empty()) return {};
+  return write_text(arguments.depfile, depfile_text(project, paths.archive, sources));
 }
 
 Status compile_plan(const Context& context, const PermuteArguments& arguments, const Project& project,
                     const PermutationPlan& plan, const Shard& shard, const Paths& paths) {
   Result<std::unique_ptr<Cache>> cache = open_cache_of(arguments);
   if (!cache) return tl::unexpected(cache.error());
-  const ClosureCosts costs = read_costs(arguments.costs);
+  const ClosureCosts costs = read_costs(project.costs);
   PermuteOptions options;
   options.threads = arguments.jobs;
   options.shard = shard;
@@ -233,42 +264,86 @@ Status compile_plan(const Context& context, const PermuteArguments& arguments, c
                 fmt::format("{} of {} permutations did not compile; {}", summary->failed, kept_count(plan),
                             arguments.keep_going ? "the archive lacks them" : "no archive is written"));
   }
-  if (!arguments.depfile.empty()) {
-    if (Status status = write_text(arguments.depfile, depfile_text(project, paths.archive, *summary)); !status)
-      return status;
-  }
-  return write_stamp(paths.stamp, paths.archive, project.manifest, project.registry, arguments.shard);
+  if (Status status = write_depfile(arguments, project, paths, summary->files); !status) return status;
+  return write_stamp(paths.stamp, paths.archive, project.fingerprint, summary->files);
 }
 
-Status merge_parts(const PermuteArguments& arguments, const Manifest& manifest, const PermutationPlan& plan) {
-  const std::string path = paths_of(arguments, manifest, {}).archive;
-  const std::vector<std::filesystem::path> parts(arguments.merge.begin(), arguments.merge.end());
-  if (Status status = merge_archives(parts, path); !status) return status;
-  const Result<Archive> archive = Archive::open(path);
-  if (!archive) return tl::unexpected(archive.error());
-  for (const PlannedPermutation& planned : plan.permutations) {
-    if (!planned.is_kept() || archive->find(planned.key)) continue;
-    std::filesystem::remove(path);
-    return fail(
-        ErrorCode::usage, "permute.incomplete",
-        fmt::format("the parts lack the permutation {}; every shard of one plan is expected", plan.name(planned)));
+/// Also puts together what the parts cost and which files they read.
+Status merge_parts(const PermuteArguments& arguments, const Project& project, const PermutationPlan& plan,
+                   const Paths& paths) {
+  if (Status status = merge_shards(plan, project.fingerprint, arguments.merge, paths.archive); !status) return status;
+  ClosureCosts costs;
+  std::set<std::string> files;
+  for (const std::string& part : arguments.merge) {
+    costs.merge(read_costs(read_all(std::filesystem::path(part).replace_extension(".costs"))));
+    if (const std::optional<Stamp> stamp = read_stamp(stamp_path(part)))
+      files.insert(stamp->files.begin(), stamp->files.end());
   }
-  fmt::print("{} permutations in {}\n", archive->size(), path);
-  return {};
+  if (!costs.empty()) {
+    if (Status status = write_text(paths.costs, write_costs(costs)); !status) return status;
+  }
+  const Result<Archive> archive = Archive::open(paths.archive);
+  if (!archive) return tl::unexpected(archive.error());
+  fmt::print("{} permutations in {}\n", archive->size(), paths.archive);
+  return write_stamp(paths.stamp, paths.archive, project.fingerprint, {files.begin(), files.end()});
+}
+
+std::string absolute_path(const std::string& path) {
+  std::string text = std::filesystem::absolute(path).lexically_normal().string();
+  if (text.size() > 1 && text.ends_with('/')) text.pop_back();
+  return text;
+}
+
+/// The options of this run as its tasks get them.
+Result<ShardedRun> sharded_run(const Context& context, const PermuteArguments& arguments, const Project& project) {
+  ShardedRun run;
+  run.program = program_path();
+  run.manifest = absolute_path(arguments.manifest);
+  run.name = project.manifest.name;
+  run.folder = absolute_path(arguments.output);
+  run.shards = arguments.shards;
+  run.threads = std::max(1u, arguments.jobs);
+  run.inputs = {run.program, run.manifest};
+  for (const std::filesystem::path& folder : project.manifest.folders) run.inputs.push_back(absolute_path(folder));
+  for (const std::string& folder : context.folders) {
+    run.options.insert(run.options.end(), {"-I", absolute_path(folder)});
+    run.inputs.push_back(absolute_path(folder));
+  }
+  if (!arguments.costs.empty()) {  // a copy: all tasks must see the same
+    const std::string copy = fmt::format("{}/{}.shard-costs", run.folder, run.name);
+    if (Status status = write_text(copy, project.costs); !status) return tl::unexpected(status.error());
+    run.shard_options.insert(run.shard_options.end(), {"--costs", copy});
+    run.inputs.push_back(copy);
+  }
+  if (arguments.no_cache) run.shard_options.push_back("--no-cache");
+  if (!arguments.cache.empty()) {
+    const bool is_remote = arguments.cache.find("://") != std::string::npos;
+    run.shard_options.insert(run.shard_options.end(),
+                             {"--cache", is_remote ? arguments.cache : absolute_path(arguments.cache)});
+  }
+  if (arguments.cache_megabytes != PermuteArguments().cache_megabytes)
+    run.shard_options.insert(run.shard_options.end(), {"--cache-size", std::to_string(arguments.cache_megabytes)});
+  return run;
+}
+
+Status emit(const Context& context, const PermuteArguments& arguments, const Project& project) {
+  const Result<ShardedRun> run = sharded_run(context, arguments, project);
+  if (!run) return tl::unexpected(run.error());
+  return arguments.emit == "ninja" ? emit_ninja(*run) : emit_slurm(*run);
 }
 
 Status run_permute(const Context& context, const PermuteArguments& arguments) {
   const Result<Shard> shard = parse_shard(arguments.shard);
   if (!shard) return tl::unexpected(shard.error());
-  const Result<Project> project = load_project(context, arguments.manifest);
+  const Result<Project> project = load_project(context, arguments);
   if (!project) return tl::unexpected(project.error());
   const Paths paths = paths_of(arguments, project->manifest, *shard);
   const bool compiles = !arguments.list && !arguments.dry_run && arguments.explain.empty() && arguments.merge.empty() &&
-                        arguments.sources.empty();
-  if (compiles && !arguments.force &&
-      is_up_to_date(paths.stamp, paths.archive, project->manifest, project->registry, arguments.shard)) {
+                        arguments.sources.empty() && arguments.emit.empty();
+  const std::optional<Stamp> stamp = compiles && !arguments.force ? read_stamp(paths.stamp) : std::nullopt;
+  if (stamp && is_up_to_date(*stamp, paths.archive, project->fingerprint)) {
     fmt::print("{} is up to date\n", paths.archive);
-    return {};
+    return write_depfile(arguments, *project, paths, stamp->files);
   }
   const Result<PermutationPlan> plan = plan_permutations(project->registry, project->manifest);
   if (!plan) return tl::unexpected(plan.error());
@@ -291,7 +366,8 @@ Status run_permute(const Context& context, const PermuteArguments& arguments) {
     return {};
   }
   if (Status status = make_folder(arguments.output); !status) return status;
-  if (!arguments.merge.empty()) return merge_parts(arguments, project->manifest, *plan);
+  if (!arguments.emit.empty()) return emit(context, arguments, *project);
+  if (!arguments.merge.empty()) return merge_parts(arguments, *project, *plan, paths);
   return compile_plan(context, arguments, *project, *plan, *shard, paths);
 }
 
@@ -307,6 +383,11 @@ void add_permute(CLI::App& app, Context& context) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->add_option("--shard", arguments->shard, "i/n: the i-th of n parts");
+  command->add_option("--emit", arguments->emit, "Write files that run the shards and merge them: ninja or slurm")
+      ->check(CLI::IsMember({"ninja", "slurm"}));
+  command->add_option("--shards", arguments->shards, "Of --emit; each has as many threads as -j says, or one")
+      ->check(CLI::Range(1, 10000))
+      ->default_val(4);
   command->add_option("--merge", arguments->merge, "Archives of all shards, to be one");
   command->add_option("--costs", arguments->costs, "A .costs file of an earlier run, to balance shards by");
   command->add_option("--cache", arguments->cache, "Folder, or redis://host[:port][/database]; default: the user's");

@@ -8,8 +8,11 @@ namespace relievo {
 
 namespace {
 
-std::string with_place(const Rule& rule) {
-  return fmt::format("{} ({}:{})", to_string(rule), rule.file, rule.line);
+/// The file as seen from the manifest: archives hold the reasons, and are the same wherever the project lies.
+std::string with_place(const Rule& rule, const Manifest& manifest) {
+  const std::filesystem::path folder = std::filesystem::path(manifest.file).parent_path();
+  const std::string seen = std::filesystem::path(rule.file).lexically_relative(folder).generic_string();
+  return fmt::format("{} ({}:{})", to_string(rule), seen.empty() ? rule.file : seen, rule.line);
 }
 
 /// What the capability table asks about a program: its shaders' stages and its features.
@@ -42,9 +45,9 @@ std::string Pruner::scene_reason(const Parts& parts) const {
 }
 
 std::string Pruner::rule_reason(const Parts& parts, const Facts& facts) const {
-  if (const Rule* broken = broken_rule(parts, facts)) return with_place(*broken);
+  if (const Rule* broken = broken_rule(parts, facts)) return with_place(*broken, manifest_);
   for (const Rule& rule : manifest_.rules) {
-    if (is_broken(rule, facts)) return with_place(rule);
+    if (is_broken(rule, facts)) return with_place(rule, manifest_);
   }
   return {};
 }

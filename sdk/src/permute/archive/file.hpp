@@ -28,14 +28,16 @@ class File {
   bool write_at(std::uint64_t offset, std::string_view bytes) const;
   /// False, with errno, when there is less.
   bool read_at(std::uint64_t offset, std::span<char> bytes) const;
-  /// Closes now; false, with errno, when the system reports a write that failed late.
-  bool close();
+  /// False, with errno, when the system reports a write that failed late, as network file systems do at a close. The
+  /// file stays open.
+  bool settle() const;
 
  private:
   int descriptor_ = -1;
 };
 
-/// A new, empty file beside `path`, of a name that nobody else has; `name` receives it.
+/// A new, empty file beside `path`, of a name that nobody else has; `name` receives it. While it is open it is locked,
+/// so that what a killed process left can be told from what is being written, on any machine.
 File create_beside(const std::filesystem::path& path, std::string_view suffix, std::filesystem::path& name);
 
 /// A file in the folder of `path` that vanishes with the process, however that ends. `can_be_named`: until it is
@@ -45,6 +47,9 @@ File create_unnamed(const std::filesystem::path& path, bool& can_be_named);
 /// Names an unnamed file, with a name as `create_beside` would give; false, with errno, when that fails.
 bool give_name(const File& file, const std::filesystem::path& path, std::string_view suffix,
                std::filesystem::path& name);
+
+/// Removes what killed processes left beside `path`: files that `create_beside` named and nobody holds open.
+void sweep_beside(const std::filesystem::path& path);
 
 /// "'a.rva' cannot be written: No space left on device [archive.write]", from errno.
 tl::unexpected<Error> write_failure(const std::filesystem::path& path);

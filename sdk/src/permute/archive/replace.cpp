@@ -55,13 +55,13 @@ class Output {
   std::uint64_t offset_ = 0;
 };
 
-bool write(File& file, const Layout& layout, const Spool& spool) {
+bool write(const File& file, const Layout& layout, const Spool& spool) {
   Output output(file);
   if (!output.append(layout.header)) return false;
   for (const std::uint32_t blob : layout.blobs) {
     if (!output.append(spool.file(), spool.blobs()[blob])) return false;
   }
-  return output.append(layout.index) && output.flush() && file.close();
+  return output.append(layout.index) && output.flush() && file.settle();
 }
 
 /// The spool has the blobs where they belong: it lacks only what is around them, and a name.
@@ -70,10 +70,10 @@ bool complete(const Spool& spool, const Layout& layout, const fs::path& path, fs
          give_name(spool.file(), path, ".tmp", temporary);
 }
 
-/// False, with errno, when the archive could not be written under a temporary name.
-bool write_beside(const fs::path& path, const Layout& layout, const Spool& spool, fs::path& temporary) {
+/// False, with errno, when the archive could not be written under a temporary name. `file` may hold it open.
+bool write_beside(const fs::path& path, const Layout& layout, const Spool& spool, fs::path& temporary, File& file) {
   if (layout.is_spool && spool.can_be_named() && complete(spool, layout, path, temporary)) return true;
-  File file = create_beside(path, ".tmp", temporary);
+  file = create_beside(path, ".tmp", temporary);
   return file && write(file, layout, spool);
 }
 
@@ -91,8 +91,9 @@ Status check_replaceable(const fs::path& path) {
 
 Status replace(const fs::path& path, const Layout& layout, const Spool& spool) {
   fs::path temporary;
+  File file;  // locked until it has its name
   Status status;
-  if (!write_beside(path, layout, spool, temporary)) status = write_failure(path);
+  if (!write_beside(path, layout, spool, temporary, file)) status = write_failure(path);
   std::error_code failed, ignored;
   if (status) fs::rename(temporary, path, failed);
   if (failed) {

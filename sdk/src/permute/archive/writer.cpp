@@ -153,6 +153,7 @@ Result<ArchiveWriter> ArchiveWriter::create(const std::filesystem::path& path, s
   if (const std::string fault = archive::fault_of(std::span<const ArchiveAxis>(axes)); !fault.empty())
     return fail(ErrorCode::usage, "archive.axes", fault, path.string());
   if (Status status = archive::check_replaceable(path); !status) return tl::unexpected(status.error());
+  archive::sweep_beside(path);
   Result<archive::Spool> spool = archive::Spool::create(path);
   if (!spool) return tl::unexpected(spool.error());
   return ArchiveWriter(std::make_unique<State>(path, std::move(axes), std::move(*spool)));

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "describe/descriptor_place.hpp"
+#include "describe/origins.hpp"
 #include "describe/registry_checks.hpp"
 #include "describe/source_path.hpp"
 #include "describe/toml_reader.hpp"
@@ -38,13 +39,6 @@ Status add_descriptors(Registry& registry) {
     if (!status) return status;
   }
   return status;
-}
-
-/// A user looks for the file where it lies on disk.
-Error name_file_on_disk(Error error, const Registry& registry) {
-  const auto origin = registry.origins.find(error.file);
-  if (origin != registry.origins.end()) error.file = origin->second;
-  return error;
 }
 
 Result<Registry> finish(Registry registry) {

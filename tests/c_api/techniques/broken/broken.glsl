@@ -1,0 +1,4 @@
+// Its third line does not compile.
+Hit broken_trace(Ray ray) {
+  return nothing;
+}

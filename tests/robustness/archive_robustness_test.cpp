@@ -192,11 +192,16 @@ Kills kill_writers(std::size_t rounds, std::uint32_t seed) {
   const TemporaryFolder folder;
   const SampleArchive one = sample_archive(200000), two = sample_archive(300000);
   test::write_archive(folder / "a.rva", one);
+  // Added from back to front, an archive is put in order when it is finished: that takes longer, and is killed more.
+  SampleArchive one_backwards = one, two_backwards = two;
+  std::ranges::reverse(one_backwards.permutations);
+  std::ranges::reverse(two_backwards.permutations);
   std::mt19937 random(seed);
   Kills kills;
   for (; kills.rounds < rounds && !testing::Test::HasFailure(); ++kills.rounds) {
     const pid_t writer = start([&]() -> int {
-      for (bool turn = false;; turn = !turn) test::write_archive(folder / "a.rva", turn ? one : two);
+      for (bool turn = false;; turn = !turn)
+        test::write_archive(folder / "a.rva", turn ? one_backwards : two_backwards);
     });
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
     ::kill(writer, SIGKILL);

@@ -1,0 +1,89 @@
+/// The values of our descriptors' axes, drawn and traced on both backends.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/height_maps.hpp"
+#include "support/linear_claims.hpp"
+#include "support/pipeline.hpp"
+#include "support/scenes.hpp"
+
+namespace relievo::test {
+namespace {
+
+/// Heights that 16 bits hold exactly.
+HeightMap hills_of_16_bits() {
+  HeightMap map = smooth_noise_map(48, 32);
+  for (float& height : map.texels) height = static_cast<float>(std::lround(height * 65535.0f)) / 65535.0f;
+  return map;
+}
+
+RenderRequest request_with(const std::string& stage, const std::map<std::string, double>& values) {
+  RenderRequest request;
+  request.stage = stage;
+  request.technique = stage == "vertex" ? "" : "relief";
+  request.filter = HeightFilter::exact;
+  request.values = values;
+  return request;
+}
+
+std::vector<std::uint8_t> draw(const std::string& backend, const std::string& stage,
+                               const std::map<std::string, double>& values) {
+  const Scene scene = make_scene(MeshKind::plane);
+  return render_on(backend, scene, mesh_of(scene), hills_of_16_bits(), request_with(stage, values)).color;
+}
+
+TEST(Axes, EveryHeightFormatGivesTheSamePicture) {
+  for (const std::string& backend : both_backends) {
+    const auto red = draw(backend, "surface", {});
+    EXPECT_EQ(draw(backend, "surface", {{"height.format", 1}}), red) << "alpha on " << backend;
+    EXPECT_GE(compare_images(draw(backend, "surface", {{"height.format", 2}}), red).within_percent, 99.9)
+        << "red_green on " << backend;
+  }
+}
+
+TEST(Axes, EveryHeightFormatGivesTheSameHits) {
+  const HeightMap map = hills_of_16_bits();
+  const std::vector<Ray> rays = bounded_rays(map, 2000, 7);
+  for (const std::string& backend : both_backends) {
+    const std::vector<Hit> red = trace_on(backend, map, rays, request_of("exact"));
+    for (const double format : {1.0, 2.0}) {
+      const std::vector<Hit> hits = trace_on(backend, map, rays, request_of("exact", {{"height.format", format}}));
+      std::size_t apart = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        // Two bytes are put together with one rounding: enough to tip rays that graze.
+        if (hits[i].status != red[i].status || std::abs(hits[i].h - red[i].h) > 1e-5) ++apart;
+      }
+      EXPECT_LE(apart, format == 1.0 ? 0u : 2u) << backend << ", format " << format;
+    }
+  }
+}
+
+TEST(Axes, NormalsFromHeightsAreThoseOfTheMap) {
+  for (const std::string stage : {"surface", "prism", "vertex"}) {
+    for (const std::string& backend : both_backends) {
+      const auto by_map = draw(backend, stage, {});
+      const auto by_height = draw(backend, stage, {{stage + ".normal_source", 1}});
+      ASSERT_EQ(by_map.size(), by_height.size());
+      std::size_t far = 0, drawn = 0;
+      for (std::size_t i = 0; i < by_map.size(); i += 4) {
+        if (by_map[i + 3] == 0) continue;
+        ++drawn;
+        far += std::abs(by_map[i] - by_height[i]) > 8;
+      }
+      EXPECT_GT(drawn, 3000u);
+      // Baked normals are interpolated after they are made unit vectors, differences before: close, and not the same.
+      EXPECT_LT(static_cast<double>(far), 0.02 * static_cast<double>(drawn)) << stage << " on " << backend;
+      EXPECT_NE(by_map, by_height) << stage << " on " << backend << ": the axis does nothing";
+    }
+  }
+}
+
+TEST(Axes, APictureWithoutDepthWritesIsTheSameOnALonePlane) {
+  for (const std::string& backend : both_backends) {
+    EXPECT_EQ(draw(backend, "surface", {{"surface.depth_write", 1}}), draw(backend, "surface", {})) << backend;
+  }
+}
+
+}  // namespace
+}  // namespace relievo::test

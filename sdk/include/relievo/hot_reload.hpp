@@ -71,7 +71,7 @@ class HotReloader {
 
   /// Compiled at the next look, at once by a thread of its own: the callback gets it, or its error.
   HotProgramId add(HotProgram program);
-  /// No callback that begins after it names the program.
+  /// Only a callback that is under way may still name the program.
   void remove(HotProgramId id);
   /// The program as it was last told; null before, and for one that is not there.
   std::shared_ptr<const HotProgramState> current(HotProgramId id) const;

@@ -1,5 +1,7 @@
 #include "permute/hot_reload/reach.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "permute/closure.hpp"
@@ -31,7 +33,8 @@ bool reaches(const SourceChanges& changes, const ComposedProgram& program) {
 }
 
 CacheKey fingerprint(const ComposedProgram& program) {
-  const std::string contract = describe_contract(program);
+  std::string contract = describe_contract(program);
+  for (const ParameterSlot& slot : program.parameters) contract += fmt::format("{} ", slot.default_value);
   std::vector<std::string_view> parts = {contract};
   for (const ComposedShader& shader : program.shaders) {
     parts.push_back(to_string(shader.stage));

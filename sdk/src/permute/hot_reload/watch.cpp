@@ -47,8 +47,10 @@ FolderWatch::Stamps FolderWatch::look() const {
 }
 
 bool FolderWatch::is_fresh() const {
-  const auto oldest = fs::file_time_type::clock::now() - coarsest_time;
-  return std::any_of(seen_.begin(), seen_.end(), [&](const auto& file) { return file.second.time > oldest; });
+  const auto now = fs::file_time_type::clock::now();
+  return std::any_of(seen_.begin(), seen_.end(), [&](const auto& file) {
+    return file.second.time > now - coarsest_time && file.second.time < now + coarsest_time;
+  });
 }
 
 bool FolderWatch::has_settled_change(Clock::time_point now) {

@@ -200,6 +200,34 @@ TEST(Permute, FindsProgramsThatTextsDoNotTellApart) {
   EXPECT_EQ(same->programs, 4u);
 }
 
+TEST(Permute, TakesTheAxisThatATechniqueAdds) {
+  SourceTree tree = embedded_sources();
+  tree["techniques/mine/technique.toml"] =
+      "schema = 1\nname = \"mine\"\ntitle = \"Mine\"\nclass = \"unsafe\"\nfirst_hit = \"never\"\n"
+      "module = \"mine.glsl\"\nmaps = [\"height\"]\n[axes.shadow]\ntitle = \"Shadows\"\nvalues = [\"none\", \"hard\", "
+      "\"soft\"]\ndefault = \"none\"\nbinding = \"macro\"\n[[axes.shadow.rule]]\nvalues = [\"soft\"]\nrequires = "
+      "{filter = "
+      "\"exact\"}\n";
+  tree["techniques/mine/mine.glsl"] =
+      "#include \"shaders/lib/search.glsl\"\nHit mine_trace(Ray ray) {\n#if mine_shadow == mine_shadow_soft\n"
+      "  return relievo_hit_at(ray, RELIEVO_MISS, 0.28125);\n#endif\n  return relievo_hit_at(ray, RELIEVO_MISS, "
+      "0.0);\n}\n";
+  const Registry with_axis = *load_registry(tree);
+  const char* manifest =
+      "schema = 1\nname = \"axis\"\ntargets = [\"glsl-450\"]\n[axes]\ntechnique = \"mine\"\n"
+      "filter = [\"exact\", \"hardware\"]\nshadow = \"all\"\n";
+  TemporaryFolder folder;
+  const auto summary = run(with_axis, manifest, folder.path() / "axis.rla");
+  ASSERT_TRUE(summary) << format(summary.error());
+  EXPECT_EQ(summary->asked, 6u);
+  EXPECT_EQ(summary->pruned, 1u);
+  const auto archive = Archive::open(folder.path() / "axis.rla");
+  EXPECT_NE(glsl(*archive, {{"shadow", "soft"}}).find("0.28125"), std::string::npos);
+  EXPECT_EQ(glsl(*archive, {{"shadow", "hard"}}).find("0.28125"), std::string::npos);
+  EXPECT_EQ(archive->program(*archive->find(Assignment{{"shadow", "hard"}})),
+            archive->program(*archive->find(Assignment{})));
+}
+
 TEST(Freeze, TurnsOneConstantIntoAnOrdinaryOneAndLeavesTheOther) {
   ComposedProgram program;
   program.key = "freeze";

@@ -13,7 +13,11 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 if(TARGET relievo_cli)
   file(RELATIVE_PATH lib_from_bin /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
   set_target_properties(relievo_cli PROPERTIES INSTALL_RPATH "$ORIGIN/${lib_from_bin}")
-  install(TARGETS relievo_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  set_target_properties(relievo_cli PROPERTIES EXPORT_NAME relievo_program)
+  install(TARGETS relievo_cli EXPORT relievoTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # A project that has us as a subfolder calls relievo_add_shaders as well.
+  add_executable(relievo::relievo_program ALIAS relievo_cli)
+  include(relievo_add_shaders)
 endif()
 
 install(EXPORT relievoTargets NAMESPACE relievo:: DESTINATION ${package_dir})
@@ -22,6 +26,7 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/relievoConfig.cmake.in
 # Before 1.0 a minor version may change interfaces.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/relievoConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/relievoConfig.cmake ${PROJECT_BINARY_DIR}/relievoConfigVersion.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/relievo_add_shaders.cmake
         DESTINATION ${package_dir})
 
 file(RELATIVE_PATH RELIEVO_PREFIX_FROM_PC /${pkgconfig_dir} /)
@@ -33,4 +38,6 @@ install(FILES ${PROJECT_BINARY_DIR}/relievo.pc DESTINATION ${pkgconfig_dir})
 if(RELIEVO_BUILD_TESTS AND NOT RELIEVO_SANITIZE AND NOT RELIEVO_COVERAGE)
   add_test(NAME InstalledPackage.IsConsumed COMMAND ${PROJECT_SOURCE_DIR}/tests/install/run.sh ${PROJECT_BINARY_DIR})
   set_tests_properties(InstalledPackage.IsConsumed PROPERTIES LABELS install TIMEOUT 600)
+  add_test(NAME InstalledPackage.BuildsShaders COMMAND ${PROJECT_SOURCE_DIR}/tests/install/shaders.sh ${PROJECT_BINARY_DIR})
+  set_tests_properties(InstalledPackage.BuildsShaders PROPERTIES LABELS install TIMEOUT 600)
 endif()

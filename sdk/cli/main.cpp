@@ -10,7 +10,7 @@ namespace {
 std::vector<std::string> long_options(int argc, char** argv) {
   std::vector<std::string> arguments(argv + 1, argv + argc);
   for (std::string& argument : arguments) {
-    if (argument == "-MD" || argument == "-MF" || argument == "-O0") argument.insert(0, "-");
+    if (argument == "-MD" || argument == "-MF" || argument == "-MT" || argument == "-O0") argument.insert(0, "-");
   }
   std::reverse(arguments.begin(), arguments.end());  // the order that CLI11's parse takes
   return arguments;

@@ -18,7 +18,7 @@ namespace relievo::cli {
 namespace {
 
 struct PermuteArguments {
-  std::string manifest, output = ".", shard, cache, depfile, costs, sources, emit;
+  std::string manifest, output = ".", shard, cache, depfile, depfile_target, costs, sources, emit;
   std::size_t sample = 0;
   std::vector<std::string> explain, merge;
   std::uint64_t cache_megabytes = 2048;
@@ -190,24 +190,26 @@ Result<std::unique_ptr<Cache>> open_cache_of(const PermuteArguments& arguments) 
   return open_cache(options);
 }
 
-std::string depfile_text(const Project& project, const std::string& archive, const std::vector<std::string>& sources) {
-  std::vector<std::string> files = {project.manifest.file};
+/// As Make and Ninja read a name.
+std::string escape_name(std::string name) {
+  for (std::size_t at = 0; (at = name.find_first_of(" #$", at)) != std::string::npos; at += 2)
+    name.insert(at, name[at] == '$' ? "$" : "\\");
+  return name;
+}
+
+std::string depfile_text(const Project& project, const std::string& target, const std::vector<std::string>& sources) {
+  std::set<std::string> files = {project.manifest.file};
   for (const std::string& source : sources) {
     const auto origin = project.registry.origins.find(source);
-    if (origin != project.registry.origins.end()) files.push_back(origin->second);
+    if (origin != project.registry.origins.end()) files.insert(origin->second);
   }
-  // Descriptors decide as well.
+  // Descriptors decide as well, and so do techniques that come or go.
+  for (const std::filesystem::path& folder : project.manifest.folders) files.insert(folder.generic_string());
   for (const auto& [source, origin] : project.registry.origins) {
-    if (source.ends_with(".toml")) files.push_back(origin);
+    if (source.ends_with(".toml")) files.insert(origin);
   }
-  std::sort(files.begin(), files.end());
-  files.erase(std::unique(files.begin(), files.end()), files.end());
-  std::string text = archive + ":";
-  for (std::string& file : files) {
-    for (std::size_t at = 0; (at = file.find_first_of(" #$", at)) != std::string::npos; at += 2)
-      file.insert(at, file[at] == '$' ? "$" : "\\");
-    text += " \\\n  " + file;
-  }
+  std::string text = escape_name(target) + ":";
+  for (const std::string& file : files) text += " \\\n  " + escape_name(file);
   return text + "\n";
 }
 
@@ -231,7 +233,8 @@ Paths paths_of(const PermuteArguments& arguments, const Manifest& manifest, cons
 Status write_depfile(const PermuteArguments& arguments, const Project& project, const Paths& paths,
                      const std::vector<std::string>& sources) {
   if (arguments.depfile.empty()) return {};
-  return write_text(arguments.depfile, depfile_text(project, paths.archive, sources));
+  const std::string& target = arguments.depfile_target.empty() ? paths.archive : arguments.depfile_target;
+  return write_text(arguments.depfile, depfile_text(project, target, sources));
 }
 
 Status compile_plan(const Context& context, const PermuteArguments& arguments, const Project& project,
@@ -402,6 +405,7 @@ void add_permute(CLI::App& app, Context& context) {
                       "Write the composed GLSL below this folder, and compile nothing");
   command->add_option("--sample", arguments->sample, "Of so many permutations, evenly spread; 0 = all");
   command->add_option("--MF", arguments->depfile, "Write a depfile of this name");
+  command->add_option("--MT", arguments->depfile_target, "What the depfile is of; default: the archive");
 }
 
 }  // namespace relievo::cli

@@ -18,12 +18,13 @@ libdir=$(dirname "$(find "$prefix" -name librelievo.so)")
 
 # A path of the build machine in an installed file breaks the package elsewhere.
 for path in "$root" "$build" "$work/first"; do
-  leak=$(grep -rlF --include='*.cmake' --include='*.pc' --include='*.hpp' -- "$path" "$prefix" || true)
+  leak=$(grep -rlF --include='*.cmake' --include='*.pc' --include='*.hpp' --include='*.h' -- "$path" "$prefix" || true)
   [ -z "$leak" ] || fail "$path is named in $leak"
 done
 for header in "$root"/sdk/include/relievo/*.hpp; do
   [ -f "$prefix/include/relievo/$(basename "$header")" ] || fail "$(basename "$header") is not installed"
 done
+[ -f "$prefix/include/relievo.h" ] || fail "relievo.h is not installed"
 
 echo "found by CMake:"
 cmake -S "$here" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null

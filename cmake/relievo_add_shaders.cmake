@@ -1,0 +1,142 @@
+# relievo_add_shaders(<target> …): an archive of shaders as part of a user's build. docs/cmake.md says how it is used.
+#
+#   relievo_add_shaders(<target>
+#     MANIFEST <relievo.toml>                           or: TECHNIQUES <name>… TARGETS <name>… [STAGES <name>…] [FOLDERS <folder>…]
+#     [OUTPUT <folder>] [DEPFILE [<file>]] [CACHE <folder|redis://…|OFF>] [JOBS <n>])
+#
+# <target> is made, unless it exists: then it depends on the archive. Its property RELIEVO_ARCHIVE is the archive's path.
+include_guard(GLOBAL)
+
+function(_relievo_check_arguments target)
+  foreach(name IN LISTS argument_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "relievo_add_shaders(${target}): \"${name}\" is not an argument that is known")
+  endforeach()
+  list(REMOVE_ITEM argument_KEYWORDS_MISSING_VALUES DEPFILE)
+  if(argument_KEYWORDS_MISSING_VALUES)
+    message(FATAL_ERROR "relievo_add_shaders(${target}): ${argument_KEYWORDS_MISSING_VALUES} has no value")
+  endif()
+  if(DEFINED argument_MANIFEST)
+    foreach(name TECHNIQUES TARGETS STAGES FOLDERS)
+      if(DEFINED argument_${name})
+        message(FATAL_ERROR "relievo_add_shaders(${target}): MANIFEST says what ${name} would; one of the two is expected")
+      endif()
+    endforeach()
+  elseif(NOT argument_TECHNIQUES OR NOT argument_TARGETS)
+    message(FATAL_ERROR "relievo_add_shaders(${target}): MANIFEST, or TECHNIQUES and TARGETS are expected")
+  endif()
+endfunction()
+
+function(_relievo_toml_list result)
+  list(TRANSFORM ARGN REPLACE [[([\"\\])]] [[\\\1]] OUTPUT_VARIABLE words)
+  list(JOIN words "\", \"" text)
+  set(${result} "[\"${text}\"]" PARENT_SCOPE)
+endfunction()
+
+# Written again only when it changes: nothing is rebuilt because CMake ran.
+function(_relievo_write_manifest path name)
+  if(NOT argument_STAGES)
+    set(argument_STAGES surface)
+  endif()
+  set(text "schema = 1\nname = \"${name}\"\n")
+  if(argument_FOLDERS)
+    list(TRANSFORM argument_FOLDERS REPLACE "/+$" "")
+    set(folders "")
+    foreach(folder IN LISTS argument_FOLDERS)
+      get_filename_component(folder "${folder}" ABSOLUTE)
+      list(APPEND folders "${folder}")
+    endforeach()
+    _relievo_toml_list(words ${folders})
+    string(APPEND text "folders = ${words}\n")
+  endif()
+  _relievo_toml_list(words ${argument_TARGETS})
+  string(APPEND text "targets = ${words}\n\n[axes]\n")
+  _relievo_toml_list(words ${argument_TECHNIQUES})
+  string(APPEND text "technique = ${words}\n")
+  _relievo_toml_list(words ${argument_STAGES})
+  string(APPEND text "stage = ${words}\n")
+  file(CONFIGURE OUTPUT "${path}" CONTENT "@text@" @ONLY)
+endfunction()
+
+# The archive is called after the manifest's name, so that CMake must see when that changes.
+function(_relievo_read_name manifest result)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${manifest}")
+  if(NOT EXISTS "${manifest}")
+    message(FATAL_ERROR "relievo_add_shaders: the manifest \"${manifest}\" does not exist")
+  endif()
+  file(STRINGS "${manifest}" lines REGEX "^[ \t]*name[ \t]*=[ \t]*[\"'][a-z][a-z0-9_]*[\"']")
+  if(NOT lines)
+    message(FATAL_ERROR "relievo_add_shaders: the manifest \"${manifest}\" has no line `name = \"…\"`")
+  endif()
+  list(GET lines 0 line)
+  string(REGEX REPLACE "^[^\"']*[\"']([a-z0-9_]*)[\"'].*$" "\\1" name "${line}")
+  set(${result} "${name}" PARENT_SCOPE)
+endfunction()
+
+function(_relievo_cache_options result)
+  set(options "")
+  if(DEFINED argument_CACHE)
+    if(argument_CACHE MATCHES "://")
+      set(options --cache "${argument_CACHE}")
+    elseif(argument_CACHE)
+      get_filename_component(folder "${argument_CACHE}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_BINARY_DIR}")
+      set(options --cache "${folder}")
+    else()
+      set(options --no-cache)
+    endif()
+  endif()
+  set(${result} "${options}" PARENT_SCOPE)
+endfunction()
+
+function(relievo_add_shaders target)
+  cmake_parse_arguments(PARSE_ARGV 1 argument "" "MANIFEST;OUTPUT;CACHE;JOBS" "TECHNIQUES;TARGETS;STAGES;FOLDERS;DEPFILE")
+  _relievo_check_arguments(${target})
+  # `relievo permute` writes names for CMake to read, whatever policies the project has.
+  cmake_policy(SET CMP0116 NEW)
+
+  if(NOT DEFINED argument_OUTPUT)
+    set(argument_OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/${target}.shaders")
+  endif()
+  get_filename_component(output "${argument_OUTPUT}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_BINARY_DIR}")
+  if(DEFINED argument_MANIFEST)
+    get_filename_component(manifest "${argument_MANIFEST}" ABSOLUTE)
+    _relievo_read_name("${manifest}" name)
+  else()
+    string(TOLOWER "${target}" name)
+    string(REGEX REPLACE "[^a-z0-9]+" "_" name "${name}")
+    string(REGEX REPLACE "^_+|_+$" "" name "${name}")
+    set(manifest "${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.relievo.toml")
+    _relievo_write_manifest("${manifest}" ${name})
+  endif()
+
+  set(archive "${output}/${name}.rla")
+  # Touched by every run: the archive keeps its time when it would be the same, and what depends on it is left alone.
+  set(built "${output}/${name}.built")
+  set(depfile "${output}/${name}.d")
+  if(argument_DEPFILE)
+    get_filename_component(depfile "${argument_DEPFILE}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_BINARY_DIR}")
+  endif()
+  set(jobs "")
+  if(DEFINED argument_JOBS)
+    set(jobs -j ${argument_JOBS})
+  endif()
+  _relievo_cache_options(cache)
+  add_custom_command(
+    OUTPUT "${built}"
+    BYPRODUCTS "${archive}"
+    COMMAND relievo::relievo_program permute "${manifest}" -o "${output}" ${jobs} ${cache} --MF "${depfile}" --MT "${built}"
+    COMMAND "${CMAKE_COMMAND}" -E touch "${built}"
+    DEPENDS "${manifest}" relievo::relievo_program
+    DEPFILE "${depfile}"
+    COMMENT "Shaders of ${name}"
+    VERBATIM)
+
+  set(owner ${target})
+  if(TARGET ${target})
+    set(owner ${target}_${name}_shaders)
+    add_custom_target(${owner} DEPENDS "${built}")
+    add_dependencies(${target} ${owner})
+  else()
+    add_custom_target(${owner} ALL DEPENDS "${built}")
+  endif()
+  set_property(TARGET ${target} PROPERTY RELIEVO_ARCHIVE "${archive}")
+endfunction()

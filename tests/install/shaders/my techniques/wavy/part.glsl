@@ -1,0 +1,4 @@
+// Edited by the test.
+float wavy_part() {
+  return 0.5;
+}

@@ -82,6 +82,19 @@ TEST(Archive, BytesDoNotDependOnTheOrderOfAdding) {
   }
 }
 
+TEST(Archive, OutputsOfOneSizeInAnotherOrderAreNotTakenForThoseInPlace) {
+  // A spool in order becomes the archive as it lies; equal sizes make one in another order look the same from outside.
+  SampleArchive sample{sample_axes(), {}};
+  for (const std::uint16_t technique : {0, 1, 2}) {
+    const char* names[] = {"aaaa", "bbbb", "cccc"};
+    sample.permutations.push_back({{technique, 0, 0}, sample_program(names[technique]), {}});
+  }
+  const std::string expected = archive_bytes(sample);
+  EXPECT_EQ(fault_of(expected, sample, true), "");
+  std::ranges::reverse(sample.permutations);
+  EXPECT_EQ(archive_bytes(sample), expected);
+}
+
 TEST(Archive, BytesDependOnTheProgramsAndTheReasons) {
   const std::string expected = archive_bytes(sample_archive());
   SampleArchive sample = sample_archive();

@@ -73,8 +73,8 @@ struct PermutationPlan {
   std::string name(const PlannedPermutation& permutation) const;  ///< "technique=relief address=clamp"
 };
 
-/// Expands and prunes; compiles nothing. Errors: "permute.unknown-axis", "permute.unknown-subject", "permute.value", … at the manifest's line;
-/// "permute.too-many" beyond 10 million; "permute.key-collision".
+/// Expands and prunes; compiles nothing. Errors: "permute.unknown-axis", "permute.unknown-subject", "permute.value", …
+/// at the manifest's line; "permute.too-many" beyond 10 million; "permute.key-collision".
 Result<PermutationPlan> plan_permutations(const Registry& registry, const Manifest& manifest);
 
 /// The planned permutation as the composer takes it.

@@ -148,9 +148,13 @@ std::uint64_t add_blobs(std::span<const SpooledBlob> spooled, std::span<const st
   return offset;
 }
 
-bool is_in_place(std::span<const SpooledBlob> spooled, const Tables& tables) {
-  return std::ranges::equal(spooled, tables.blobs,
-                            [](const SpooledBlob& a, const BlobRecord& b) { return a.offset == b.offset; });
+/// The spool lays blobs out as an archive does, so all of them in order are in place.
+bool is_in_place(std::span<const SpooledBlob> spooled, std::span<const std::uint32_t> order) {
+  if (spooled.size() != order.size()) return false;
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    if (order[i] != i) return false;
+  }
+  return true;
 }
 
 /// Calls `each` with the section's records, in the order of the file.
@@ -228,7 +232,7 @@ Result<Layout> lay_out(const Contents& contents, std::span<const SpooledBlob> sp
   layout.header = header_bytes(header, layout.index);
   layout.index_offset = index_offset;
   layout.blobs = blobs.order();
-  layout.is_spool = is_in_place(spooled, tables);
+  layout.is_spool = is_in_place(spooled, blobs.order());
   return layout;
 }
 

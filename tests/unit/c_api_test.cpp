@@ -1,6 +1,7 @@
 /// What the C API does with arguments that are wrong; tests/c_api uses it as it is meant.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <map>
@@ -286,6 +287,27 @@ TEST_F(CApiPrograms, NamesThatNobodyKnowsAreErrorsOfTheirOwn) {
   EXPECT_EQ(id_of_compiling(), "compile.unknown-target");
   desc_ = good, desc_.values = &value, desc_.value_count = 1;
   EXPECT_NE(id_of_compiling(), "");
+}
+
+TEST(CApi, ABackendWithoutADriverIsUnsupported) {
+  ::setenv("VK_DRIVER_FILES", "/nonexistent", 1);
+  ::setenv("VK_ICD_FILENAMES", "/nonexistent", 1);
+  relievo_registry* registry = nullptr;
+  ASSERT_EQ(relievo_registry_load(nullptr, 0, &registry, nullptr), RELIEVO_OK);
+  const float height = 0.5f;
+  relievo_bake_desc desc{};
+  desc.map = "normal";
+  desc.heights = &height;
+  desc.width = desc.height = 1;
+  desc.backend = "vulkan";
+  relievo_map* map = nullptr;
+  relievo_error error{};
+  EXPECT_EQ(relievo_map_bake(registry, &desc, &map, &error), RELIEVO_ERROR_UNSUPPORTED);
+  EXPECT_STREQ(error.id, "backend.unavailable");
+  EXPECT_EQ(map, nullptr);
+  relievo_registry_free(registry);
+  ::unsetenv("VK_DRIVER_FILES");
+  ::unsetenv("VK_ICD_FILENAMES");
 }
 
 TEST(CApi, LongTextsOfErrorsAreCutAtACharacter) {

@@ -49,7 +49,8 @@ struct Manifest {
   std::string file;
 };
 
-/// Errors: "describe.syntax", "describe.unknown-key", …, with file, line and column; paths are relative to the file.
+/// Errors: "permute.manifest", "permute.folder", "describe.syntax", "describe.unknown-key", …, with file, line and
+/// column; paths are relative to the file. `parse_manifest` does not look whether folders exist.
 Result<Manifest> load_manifest(const std::filesystem::path& path);
 Result<Manifest> parse_manifest(std::string_view text, const std::string& file);
 
@@ -72,8 +73,8 @@ struct PermutationPlan {
   std::string name(const PlannedPermutation& permutation) const;  ///< "technique=relief address=clamp"
 };
 
-/// Expands and prunes; compiles nothing. Errors: "permute.unknown-axis", "permute.value", … at the manifest's line;
-/// "permute.too-many" beyond 10 million; "permute.key-collision".
+/// Expands and prunes; compiles nothing. Errors: "permute.unknown-axis", "permute.unknown-subject", "permute.value", …
+/// at the manifest's line; "permute.too-many" beyond 10 million; "permute.key-collision".
 Result<PermutationPlan> plan_permutations(const Registry& registry, const Manifest& manifest);
 
 /// The planned permutation as the composer takes it.

@@ -15,14 +15,6 @@ tl::unexpected<Error> fail_at(const Manifest& manifest, const ManifestAxis& axis
   return fail(ErrorCode::descriptor, std::move(id), std::move(message), manifest.file, axis.line, 1);
 }
 
-std::vector<OwnedParameter> parameters_of(const Registry& registry) {
-  std::vector<OwnedParameter> all;
-  for (const auto& [name, technique] : registry.techniques) add_parameters(name, technique.parameters, all);
-  for (const auto& [name, stage] : registry.stages) add_parameters(name, stage.parameters, all);
-  for (const auto& [name, map] : registry.maps) add_parameters(name, map.parameters, all);
-  return all;
-}
-
 template <class Table>
 std::vector<std::string> names_of(const Table& table) {
   std::vector<std::string> names;
@@ -37,6 +29,8 @@ std::vector<std::string> enum_names(Enum last) {
   return names;
 }
 
+}  // namespace
+
 AxisKind kind_of(const std::string& name) {
   constexpr std::pair<std::string_view, AxisKind> built_in[] = {
       {"technique", AxisKind::technique}, {"stage", AxisKind::stage}, {"address", AxisKind::address},
@@ -47,7 +41,6 @@ AxisKind kind_of(const std::string& name) {
   return name.starts_with(role_prefix) ? AxisKind::role : AxisKind::parameter;
 }
 
-/// What a built-in axis may be, its default first.
 std::vector<std::string> known_values(const Registry& registry, AxisKind kind) {
   switch (kind) {
     case AxisKind::technique:
@@ -68,6 +61,16 @@ std::vector<std::string> known_values(const Registry& registry, AxisKind kind) {
   }
   return {};
 }
+
+std::vector<OwnedParameter> parameters_of(const Registry& registry) {
+  std::vector<OwnedParameter> all;
+  for (const auto& [name, technique] : registry.techniques) add_parameters(name, technique.parameters, all);
+  for (const auto& [name, stage] : registry.stages) add_parameters(name, stage.parameters, all);
+  for (const auto& [name, map] : registry.maps) add_parameters(name, map.parameters, all);
+  return all;
+}
+
+namespace {
 
 /// `technique = "all"`: every technique that is one, not the truth that others are judged by.
 std::vector<std::string> all_techniques(const Registry& registry) {

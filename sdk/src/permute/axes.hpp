@@ -32,6 +32,19 @@ struct OwnedParameter {
 void add_parameters(const std::string& owner, const std::vector<Parameter>& parameters,
                     std::vector<OwnedParameter>& all);
 
+/// Those of every descriptor.
+std::vector<OwnedParameter> parameters_of(const Registry& registry);
+
+/// By an axis's name; whatever is no built-in one counts as a parameter.
+AxisKind kind_of(const std::string& name);
+
+/// What an axis that is no parameter may be, its default first.
+std::vector<std::string> known_values(const Registry& registry, AxisKind kind);
+
+/// The manifest's rules name what there is: techniques, stages, maps, parameters, values. Errors:
+/// "permute.unknown-subject", "permute.value", at the rule's line.
+Status check_rules(const Registry& registry, const Manifest& manifest);
+
 /// Errors: "permute.unknown-axis", "permute.value", "permute.duplicate", at the manifest's line.
 Result<std::vector<ResolvedAxis>> resolve_axes(const Registry& registry, const Manifest& manifest);
 

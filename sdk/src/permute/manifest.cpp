@@ -102,9 +102,22 @@ bool read_flag(TomlReader& reader, std::string_view key, bool fallback) {
   return fallback;
 }
 
-}  // namespace
+/// Relative to the manifest's own folder.
+void read_folders(TomlReader& reader, const std::filesystem::path& base, bool must_exist, Manifest& manifest) {
+  for (const std::string& folder : reader.words("folders")) {
+    manifest.folders.push_back(base / folder);
+    std::error_code error;
+    if (!must_exist || std::filesystem::is_directory(manifest.folders.back(), error)) continue;
+    reader.report(
+        "permute.folder",
+        fmt::format("{} of \"folders\" is no folder that can be read; one with techniques, maps or stages in it "
+                    "is expected",
+                    quote(folder)),
+        "folders");
+  }
+}
 
-Result<Manifest> parse_manifest(std::string_view text, const std::string& file) {
+Result<Manifest> read_manifest(std::string_view text, const std::string& file, bool folders_must_exist) {
   const Result<TomlValue> document = parse_toml(text, file);
   if (!document) return tl::unexpected(document.error());
   FirstError errors{file, {}};
@@ -115,8 +128,7 @@ Result<Manifest> parse_manifest(std::string_view text, const std::string& file) 
   manifest.file = file;
   reader.integer("schema", 1, descriptor_schema);
   manifest.name = reader.name("name");
-  const std::filesystem::path base = std::filesystem::path(file).parent_path();
-  for (const std::string& folder : reader.words("folders")) manifest.folders.push_back(base / folder);
+  read_folders(reader, std::filesystem::path(file).parent_path(), folders_must_exist, manifest);
   read_targets(reader, manifest);
   manifest.optimize = read_flag(reader, "optimize", true);
   read_scene(reader, manifest);
@@ -126,14 +138,22 @@ Result<Manifest> parse_manifest(std::string_view text, const std::string& file) 
   return manifest;
 }
 
+}  // namespace
+
+Result<Manifest> parse_manifest(std::string_view text, const std::string& file) {
+  return read_manifest(text, file, false);
+}
+
 Result<Manifest> load_manifest(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) {
+  text << stream.rdbuf();  // fails when there is nothing, which the parser has words for
+  if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(path)) {
     return fail(ErrorCode::io, "permute.manifest",
-                fmt::format("the manifest {} cannot be read; a relievo.toml is expected", quote_path(path.string())));
+                fmt::format("the manifest {} cannot be read; a relievo.toml is expected", quote_path(path.string())),
+                path.string());
   }
-  return parse_manifest(text.str(), path.string());
+  return read_manifest(text.str(), path.string(), true);
 }
 
 }  // namespace relievo

@@ -25,8 +25,11 @@ class Planner {
   }
 
   Result<PermutationPlan> run() {
-    for (const std::string& stage : stages()) {
-      if (Status status = add_stage(stage); !status) return tl::unexpected(in_manifest(status.error()));
+    for (const bool only_counts : {true, false}) {  // too many are refused before time goes into them
+      only_counts_ = only_counts;
+      for (const std::string& stage : stages()) {
+        if (Status status = add_stage(stage); !status) return tl::unexpected(in_manifest(status.error()));
+      }
     }
     // What differs only in axes that a permutation turned out not to have is one permutation.
     auto& all = plan_.permutations;
@@ -77,7 +80,7 @@ class Planner {
     const Result<Permutation> permutation = builder_.build(head);
     if (!permutation) return tl::unexpected(permutation.error());
     std::vector<std::size_t> body;
-    double count = static_cast<double>(plan_.permutations.size()), combinations = 1;
+    double combinations = 1;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       const AxisKind kind = axes_[i].kind;
       const bool is_head = kind == AxisKind::technique || kind == AxisKind::role || kind == AxisKind::stage;
@@ -85,11 +88,13 @@ class Planner {
       body.push_back(i);
       combinations *= static_cast<double>(axes_[i].archive.values.size());
     }
-    if (count + combinations > most_permutations) {
+    if (only_counts_) counted_ += combinations;
+    if (counted_ > most_permutations) {
       return fail(
           ErrorCode::descriptor, "permute.too-many",
           fmt::format("the axes combine to more than {} permutations; fewer values are expected", most_permutations));
     }
+    if (only_counts_) return {};
     return count_through(values, body, [&] { return add_one(values); });
   }
 
@@ -152,6 +157,8 @@ class Planner {
   Pruner pruner_;
   PermutationPlan plan_;
   std::unordered_map<std::string, std::uint32_t> reasons_;
+  bool only_counts_ = false;
+  double counted_ = 0;  ///< combinations of all heads
 };
 
 }  // namespace
@@ -172,6 +179,7 @@ std::string PermutationPlan::name(const PlannedPermutation& permutation) const {
 Result<PermutationPlan> plan_permutations(const Registry& registry, const Manifest& manifest) {
   Result<std::vector<ResolvedAxis>> axes = resolve_axes(registry, manifest);
   if (!axes) return tl::unexpected(axes.error());
+  if (Status status = check_rules(registry, manifest); !status) return tl::unexpected(status.error());
   return Planner(registry, manifest, *std::move(axes)).run();
 }
 

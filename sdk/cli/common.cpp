@@ -18,7 +18,8 @@ Result<Registry> Context::registry() const {
 
 void Context::report(const Error& error) {
   exit_code = relievo::exit_code(error.code);
-  if (!json || error.code == ErrorCode::mismatch) {  // a mismatch comes with its own JSON
+  // What comes with its own JSON is said beside it.
+  if (!json || error.code == ErrorCode::mismatch || error.id == "permute.failed") {
     fmt::print(stderr, "{}\n", format(error));
     return;
   }

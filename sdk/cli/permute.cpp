@@ -257,6 +257,10 @@ Status compile_plan(const Context& context, const PermuteArguments& arguments, c
   Result<PermuteSummary> summary = permute(project.registry, project.manifest, plan, paths.archive, options);
   progress.reset();
   if (!summary) return tl::unexpected(summary.error());
+  for (FoldedError& folded : summary->errors) {  // where the author finds it
+    const auto origin = project.registry.origins.find(folded.error.file);
+    if (origin != project.registry.origins.end()) folded.error.file = origin->second;
+  }
   print_errors(*summary, kept_count(plan));
   print_summary(context, *summary, paths.archive);
   if (!summary->costs.empty()) {
@@ -391,7 +395,7 @@ void add_permute(CLI::App& app, Context& context) {
   command->add_option("--shards", arguments->shards, "Of --emit; each has as many threads as -j says, or one")
       ->check(CLI::Range(1, 10000))
       ->default_val(4);
-  command->add_option("--merge", arguments->merge, "Archives of all shards, to be one");
+  command->add_option("--merge", arguments->merge, "Archives of all shards, to be one")->expected(1, -1);
   command->add_option("--costs", arguments->costs, "A .costs file of an earlier run, to balance shards by");
   command->add_option("--cache", arguments->cache, "Folder, or redis://host[:port][/database]; default: the user's");
   command->add_option("--cache-size", arguments->cache_megabytes, "MiB")->check(CLI::Range(1, 1 << 24));

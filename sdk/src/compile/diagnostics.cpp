@@ -139,11 +139,36 @@ std::string_view quoted_token(std::string_view message) {
   return close == message.npos ? std::string_view() : message.substr(open + 1, close - open - 1);
 }
 
+/// The token of "syntax error, unexpected RETURN", as it is written.
+std::string unexpected_token(std::string_view message) {
+  constexpr std::string_view words = "unexpected ";
+  constexpr std::pair<std::string_view, std::string_view> marks[] = {
+      {"left_brace", "{"}, {"right_brace", "}"}, {"left_paren", "("}, {"right_paren", ")"},
+      {"semicolon", ";"},  {"comma", ","},       {"equal", "="},      {"colon", ":"}};
+  const std::size_t at = message.find(words);
+  if (at == message.npos) return {};
+  message.remove_prefix(at + words.size());
+  std::string token(message.substr(0, message.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789")));
+  std::transform(token.begin(), token.end(), token.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const auto& [name, mark] : marks) {
+    if (token == name) return std::string(mark);
+  }
+  return token;
+}
+
+/// Where the token is, or else where the line's text begins.
+int best_column(std::string_view line, std::string_view token) {
+  const int column = token.empty() ? 0 : column_of(line, token);
+  return column > 0 ? column : static_cast<int>(std::min(line.find_first_not_of(" \t"), line.size())) + 1;
+}
+
 }  // namespace
 
 int find_column(std::string_view text, const Error& error) {
-  const std::string_view token = quoted_token(error.message);
-  if (token.empty() || error.line == 0) return 0;
+  std::string token(quoted_token(error.message));
+  if (token.empty()) token = unexpected_token(error.message);
+  if (error.line == 0) return 0;
   LineMark place;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -153,7 +178,7 @@ int find_column(std::string_view text, const Error& error) {
       place = *mark;
       continue;
     }
-    if (place.line == error.line && place.file == error.file) return column_of(line, token);
+    if (place.line == error.line && place.file == error.file) return best_column(line, token);
     ++place.line;
   }
   return 0;

@@ -22,8 +22,8 @@ std::vector<Diagnostic> parse_glslang_log(std::string_view log);
 /// permutation and lists every diagnostic (at most 10).
 Error glsl_error(std::string_view log, std::string_view permutation_key);
 
-/// glslang gives no columns: the place, in the line that `error` names, of the token that its message quotes first;
-/// 0 when `text` (with its #line directives) has no such line or token.
+/// glslang gives no columns: the place, in the line that `error` names, of the token that its message names first, or
+/// else of the line's first character; 0 when `text` (with its #line directives) has no such line.
 int find_column(std::string_view text, const Error& error);
 
 }  // namespace relievo

@@ -147,7 +147,8 @@ Result<Manifest> parse_manifest(std::string_view text, const std::string& file) 
 Result<Manifest> load_manifest(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) {
+  text << stream.rdbuf();  // fails when there is nothing, which the parser has words for
+  if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(path)) {
     return fail(ErrorCode::io, "permute.manifest",
                 fmt::format("the manifest {} cannot be read; a relievo.toml is expected", quote_path(path.string())),
                 path.string());

@@ -6,8 +6,8 @@
 #include <mutex>
 #include <vector>
 
-#include "relievo/program_cache.hpp"
 #include "relievo/permute.hpp"
+#include "relievo/program_cache.hpp"
 
 namespace relievo {
 

@@ -9,6 +9,7 @@
 
 #include "mesh_file.hpp"
 #include "permute/archive/file.hpp"
+#include "relievo/program_cache.hpp"
 
 namespace relievo::cli {
 
@@ -120,7 +121,23 @@ Result<Settings> parse_settings(const Registry& registry, const std::vector<std:
   return settings;
 }
 
+namespace {
+
+/// A cache that cannot be is done without: everything is compiled, as it is the first time.
+void keep_programs() {
+  static const bool kept = [] {
+    if (default_cache_folder().empty()) return false;
+    Result<std::unique_ptr<Cache>> cache = open_cache({});
+    if (cache) use_program_cache(*std::move(cache));
+    return cache.has_value();
+  }();
+  static_cast<void>(kept);
+}
+
+}  // namespace
+
 Result<std::unique_ptr<Backend>> open(const std::string& name, bool validation) {
+  keep_programs();
   BackendOptions options;
   options.validation = validation;
   return open_backend(name, options);

@@ -33,6 +33,7 @@ SweepPlan plan_of(const ReportOptions& options) {
   plan.budgets = {64};
   plan.image = std::min(plan.image, quick_image);
   plan.repeats = std::min(plan.repeats, 2);
+  plan.maps_elsewhere = 1;
   return plan;
 }
 
@@ -70,18 +71,23 @@ Status prepare_folder(const std::filesystem::path& folder) {
 
 /// Compiling is most of what small pictures and few rays take: a quick report compiles less.
 EvaluationInput input_to_judge(EvaluationInput input, const ReportOptions& options, std::vector<NotRun>& not_run) {
+  const std::size_t swept_maps = input.ray_cases.size();
   if (input.ray_cases.size() > 1) input.ray_cases.resize(1);
   if (!options.quick) return input;
   for (RayCase& ray_case : input.ray_cases) ray_case.angles = plan_of(options).angles;
   input.ray_image = std::min(input.ray_image, quick_image);
   input.repeats = 1;
+  if (input.backends.size() > 1 && swept_maps > 1)
+    not_run.push_back({"sweep of all height maps but the first on all backends but the first",
+                       "--quick sweeps them on one: errors hardly differ"});
   for (std::size_t i = 1; i < input.scenes.size(); ++i)
     not_run.push_back({"pictures of scene " + input.scenes[i].first, "--quick draws the first scene only"});
   if (input.scenes.size() > 1) input.scenes.resize(1);
   return input;
 }
 
-/// The first height map is judged ray by ray together with the scenes; the sweep covers all of them.
+/// The first height map is judged ray by ray together with the scenes; the sweep covers all of them. The maps that
+/// the sweep's first backend bakes, timed, serve all that follows.
 Result<Report> measure(EvaluationInput input, const ReportOptions& options, std::vector<NotRun> not_run) {
   Report report;
   report.techniques = input.techniques;
@@ -89,10 +95,6 @@ Result<Report> measure(EvaluationInput input, const ReportOptions& options, std:
   EvaluationInput judged = input_to_judge(input, options, not_run);
   report.ray_image = judged.ray_image;
   report.repeats = judged.repeats;
-  Result<Evaluation> evaluation = evaluate(judged);
-  if (!evaluation) return tl::unexpected(evaluation.error());
-  evaluation->not_run.insert(evaluation->not_run.end(), not_run.begin(), not_run.end());
-  report.evaluation = std::move(*evaluation);
   std::size_t files = input.ray_cases.size();
   if (!options.quick && files > 0) {
     for (NamedMap& map : make_synthetic_maps(synthetic_size))
@@ -101,7 +103,13 @@ Result<Report> measure(EvaluationInput input, const ReportOptions& options, std:
   Result<Sweep> sweep = run_sweep(input, plan_of(options));
   if (!sweep) return tl::unexpected(sweep.error());
   report.sweep = std::move(*sweep);
+  Result<Evaluation> evaluation = evaluate(judged);
+  if (!evaluation) return tl::unexpected(evaluation.error());
+  evaluation->not_run.insert(evaluation->not_run.end(), not_run.begin(), not_run.end());
+  report.evaluation = std::move(*evaluation);
   report.plots = draw_plots(report.sweep, files);
+  input.clock->end("plots");
+  report.phases = input.clock->phases();
   return report;
 }
 
@@ -109,6 +117,9 @@ nlohmann::json json_of(const Report& report) {
   nlohmann::json json = to_json(report.evaluation);
   json["pictures_folder"] = "pictures";
   json["sweep"] = to_json(report.sweep);
+  json["phases"] = nlohmann::json::array();
+  for (const Phase& p : report.phases)
+    json["phases"].push_back({{"name", p.name}, {"seconds", p.seconds}, {"processor_seconds", p.processor_seconds}});
   return json;
 }
 
@@ -185,6 +196,7 @@ Status run_report(const Context& context, const ReportOptions& options) {
   input->ray_image = options.ray_image;
   input->repeats = options.repeats;
   input->pictures = folder / "pictures";
+  input->baked = std::make_shared<BakedMaps>(true);
   Result<Report> report = measure(std::move(*input), options, not_run);
   if (!report) return tl::unexpected(report.error());
   nlohmann::json json = json_of(*report);

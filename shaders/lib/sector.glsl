@@ -15,7 +15,7 @@ int relievo_sector_slice(vec2 direction, int sectors) {
   return (size.y > size.x ? cuts : 0) + min(int(ratio * float(cuts)), cuts - 1);
 }
 
-// Where a sector lies in a 3D map, and back.
+// The layer of a map that a sector is, and back.
 int relievo_sector_layer(vec2 heading, int slice) { return relievo_quadrant(heading) + 4 * slice; }
 ivec2 relievo_sector_heading(int layer) { return relievo_heading(layer & 3); }
 int relievo_sector_slice_of(int layer, int sectors) { return (layer >> 2) % relievo_sector_slices(sectors); }

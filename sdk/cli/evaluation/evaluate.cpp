@@ -40,8 +40,12 @@ Result<Evaluation> evaluate(const EvaluationInput& input) {
   if (!opened) return tl::unexpected(opened.error());
   OpenBackends& backends = *opened;
   Progress progress("evaluate", steps_of(input, backends.size()));
-  for (auto part : {evaluate_rays, evaluate_pictures, evaluate_cracks}) {
+  input.clock->end("starting");
+  const std::pair<const char*, decltype(&evaluate_rays)> parts[] = {
+      {"rays", evaluate_rays}, {"pictures", evaluate_pictures}, {"cracks", evaluate_cracks}};
+  for (const auto& [name, part] : parts) {
     if (Status status = part(input, backends, evaluation, progress); !status) return tl::unexpected(status.error());
+    input.clock->end(name);
   }
   judge(input, evaluation);
   return evaluation;

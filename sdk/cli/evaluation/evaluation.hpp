@@ -21,13 +21,35 @@ struct RayCase {
   std::vector<double> angles = {60, 20, 8};  ///< degrees above the base plane
 };
 
-/// Baked maps, kept for all rays and pictures of one height map on one backend.
+/// Baked maps, kept for all rays and pictures of one height map on one backend, or on all.
 class BakedMaps {
  public:
+  /// `shared`: what one backend bakes serves all.
+  explicit BakedMaps(bool shared = false) : shared_(shared) {}
   MapSet& of(const HeightMap& height, const std::string& backend);
 
  private:
+  bool shared_;
   std::map<std::string, MapSet> sets_;
+};
+
+/// What a part of the work took.
+struct Phase {
+  std::string name;
+  double seconds = 0, processor_seconds = 0;  ///< by the wall's clock, and of all threads
+};
+
+/// Times one part after another.
+class PhaseClock {
+ public:
+  PhaseClock();
+  /// What has passed since the last call, or since the start, was `name`; parts of one name are added up.
+  void end(const std::string& name);
+  const std::vector<Phase>& phases() const { return phases_; }
+
+ private:
+  std::vector<Phase> phases_;
+  double seconds_, processor_seconds_;
 };
 
 struct EvaluationInput {
@@ -42,6 +64,7 @@ struct EvaluationInput {
   bool time = true;
   std::filesystem::path pictures;  ///< folder for PNGs; empty = none are written
   std::shared_ptr<BakedMaps> baked = std::make_shared<BakedMaps>();
+  std::shared_ptr<PhaseClock> clock = std::make_shared<PhaseClock>();
 };
 
 /// One technique on one backend over the rays of a case at an angle.

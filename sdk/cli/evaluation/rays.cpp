@@ -10,12 +10,38 @@ namespace relievo::cli {
 
 namespace {
 
-std::vector<TraceRequest> requests(const EvaluationInput& input, HeightFilter filter, double scale, bool count) {
+/// Hits held at once stay below this; fewer Jobs upload the maps and make the pipelines fewer times.
+constexpr std::size_t most_hits_at_once = std::size_t{1} << 21;
+
+/// Some angles of one case with some filters, on all backends.
+struct RayRun {
+  const EvaluationInput& input;
+  const RayCase& ray_case;
+  std::vector<double> angles;
+  std::vector<HeightFilter> filters;
+  std::vector<std::vector<Ray>> rays;  ///< one set an angle
+  std::vector<std::vector<Hit>> truth;
+
+  std::size_t requests() const { return filters.size() * input.techniques.size(); }
+  std::size_t index(std::size_t angle, std::size_t filter, std::size_t technique) const {
+    return angle * requests() + filter * input.techniques.size() + technique;
+  }
+};
+
+/// What a backend answers to a run, by RayRun::index.
+struct Answers {
+  std::vector<std::vector<Hit>> hits;
+  std::vector<double> seconds;  ///< medians; empty: not timed
+};
+
+std::vector<TraceRequest> requests_of(const RayRun& run, bool count) {
   std::vector<TraceRequest> list;
-  for (const std::string& technique : input.techniques) {
-    TraceRequest request{technique, filter, count, input.values};
-    request.values.try_emplace("ray.scale", scale);
-    list.push_back(std::move(request));
+  for (HeightFilter filter : run.filters) {
+    for (const std::string& technique : run.input.techniques) {
+      TraceRequest request{technique, filter, count, run.input.values};
+      request.values.try_emplace("ray.scale", run.ray_case.scale);
+      list.push_back(std::move(request));
+    }
   }
   return list;
 }
@@ -35,63 +61,112 @@ RayAgreement agree(const std::vector<Hit>& truth, const std::vector<Hit>& a, con
   return agreement;
 }
 
-/// One case at one angle with one filter, on all backends.
-struct RayRun {
-  const EvaluationInput& input;
-  const RayCase& ray_case;
-  double angle;
-  HeightFilter filter;
-  const std::vector<Ray>& rays;
-  const std::vector<Hit>& truth;
-};
-
-Status run_backend(const RayRun& run, Backend& backend, Evaluation& evaluation, std::vector<TraceResult>& counted) {
-  MapSet& maps = run.input.baked->of(run.ray_case.height, backend.info().name);
-  auto with_cost = requests(run.input, run.filter, run.ray_case.scale, true);
-  Result<std::vector<TraceResult>> result =
-      trace(backend, *run.input.registry, maps, run.rays, with_cost, 1, &evaluation.messages);
-  if (!result) return tl::unexpected(result.error());
-  counted = std::move(*result);
-  std::vector<TraceResult> timed;
-  if (run.input.time) {
-    auto bare = requests(run.input, run.filter, run.ray_case.scale, false);
-    Result<std::vector<TraceResult>> second =
-        trace(backend, *run.input.registry, maps, run.rays, bare, run.input.repeats, &evaluation.messages);
-    if (!second) return tl::unexpected(second.error());
-    timed = std::move(*second);
-  }
-  for (std::size_t k = 0; k < counted.size(); ++k) {
-    RayRow row{run.ray_case.name,
-               run.input.techniques[k],
-               backend.info().name,
-               std::string(to_string(run.filter)),
-               run.angle,
-               {},
-               -1};
-    row.error = compare_hits(run.truth, counted[k].hits, run.ray_case.height.width, run.ray_case.height.height);
-    if (!timed.empty()) row.seconds = median(timed[k].seconds);
-    evaluation.rays.push_back(std::move(row));
+Status bake_maps(const RayRun& run, Backend& backend, MapSet& maps, std::vector<std::string>& messages) {
+  for (const std::string& technique : run.input.techniques) {
+    Result<std::vector<std::string>> needed = required_maps(*run.input.registry, "ray", technique);
+    if (!needed) return tl::unexpected(needed.error());
+    for (const std::string& map : *needed) {
+      if (Status status = bake_map(backend, *run.input.registry, map, maps, run.input.values, &messages); !status)
+        return status;
+    }
   }
   return {};
 }
 
-Status run_case(const RayRun& run, OpenBackends& backends, Evaluation& evaluation, Progress& progress) {
-  std::vector<std::vector<TraceResult>> results;
-  for (auto& [name, backend] : backends) {
-    progress.advance(fmt::format("rays {} {}° {} {}", run.ray_case.name, run.angle, to_string(run.filter), name));
-    std::vector<TraceResult> counted;
-    if (Status status = run_backend(run, *backend, evaluation, counted); !status) return status;
-    results.push_back(std::move(counted));
+Result<JobResult> execute(const RayRun& run, Backend& backend, const MapSet& maps, bool count,
+                          std::vector<std::string>& messages) {
+  Result<Job> job = make_trace_job(*run.input.registry, maps, run.rays, requests_of(run, count),
+                                   backend.info().shader_target, count ? 1 : run.input.repeats, count);
+  if (!job) return tl::unexpected(job.error());
+  Result<JobResult> result = backend.execute(*job);
+  if (result) messages.insert(messages.end(), result->messages.begin(), result->messages.end());
+  return result;
+}
+
+Result<Answers> ask(const RayRun& run, Backend& backend, std::vector<std::string>& messages) {
+  MapSet& maps = run.input.baked->of(run.ray_case.height, backend.info().name);
+  if (Status status = bake_maps(run, backend, maps, messages); !status) return tl::unexpected(status.error());
+  Result<JobResult> counted = execute(run, backend, maps, true, messages);
+  if (!counted) return tl::unexpected(counted.error());
+  Answers answers;
+  for (std::size_t i = 0; i < counted->read_backs.size(); ++i) {
+    answers.hits.push_back(
+        read_hits(counted->read_backs[i], run.rays[i / run.requests()], run.ray_case.height.address));
+    counted->read_backs[i] = {};
   }
-  if (run.filter != HeightFilter::exact || results.size() < 2) return {};
+  if (!run.input.time) return answers;
+  Result<JobResult> timed = execute(run, backend, maps, false, messages);
+  if (!timed) return tl::unexpected(timed.error());
+  const std::size_t round = answers.hits.size();
+  for (std::size_t i = 0; i < round && !timed->command_seconds.empty(); ++i) {
+    std::vector<double> seconds;
+    for (std::size_t k = i; k < timed->command_seconds.size(); k += round) seconds.push_back(timed->command_seconds[k]);
+    answers.seconds.push_back(median(seconds));
+  }
+  return answers;
+}
+
+void add_rows(const RayRun& run, std::size_t angle, std::size_t filter, const std::string& backend,
+              const Answers& answers, Evaluation& evaluation) {
+  const HeightMap& height = run.ray_case.height;
   for (std::size_t k = 0; k < run.input.techniques.size(); ++k) {
-    RayAgreement agreement = agree(run.truth, results[0][k].hits, results[1][k].hits);
+    const std::size_t i = run.index(angle, filter, k);
+    RayRow row{run.ray_case.name,
+               run.input.techniques[k],
+               backend,
+               std::string(to_string(run.filters[filter])),
+               run.angles[angle],
+               compare_hits(run.truth[angle], answers.hits[i], height.width, height.height),
+               answers.seconds.empty() ? -1 : answers.seconds[i]};
+    evaluation.rays.push_back(std::move(row));
+  }
+}
+
+void add_agreements(const RayRun& run, std::size_t angle, std::size_t filter, const Answers& left, const Answers& right,
+                    Evaluation& evaluation) {
+  for (std::size_t k = 0; k < run.input.techniques.size(); ++k) {
+    const std::size_t i = run.index(angle, filter, k);
+    RayAgreement agreement = agree(run.truth[angle], left.hits[i], right.hits[i]);
     agreement.case_name = run.ray_case.name;
     agreement.technique = run.input.techniques[k];
-    agreement.angle = run.angle;
+    agreement.angle = run.angles[angle];
     evaluation.ray_agreements.push_back(agreement);
   }
+}
+
+Status run_case(const RayRun& run, OpenBackends& backends, Evaluation& evaluation, Progress& progress) {
+  std::vector<std::pair<std::string, Answers>> answers;
+  for (auto& [name, backend] : backends) {
+    for (std::size_t i = 0; i < run.angles.size() * run.filters.size(); ++i)
+      progress.advance(fmt::format("rays {} {}° {}", run.ray_case.name, run.angles.front(), name));
+    Result<Answers> answer = ask(run, *backend, evaluation.messages);
+    if (!answer) return tl::unexpected(answer.error());
+    answers.emplace_back(backend->info().name, std::move(*answer));
+  }
+  for (std::size_t a = 0; a < run.angles.size(); ++a) {
+    for (std::size_t f = 0; f < run.filters.size(); ++f) {
+      for (const auto& [name, answer] : answers) add_rows(run, a, f, name, answer, evaluation);
+      if (run.filters[f] == HeightFilter::exact && answers.size() > 1)
+        add_agreements(run, a, f, answers[0].second, answers[1].second, evaluation);
+    }
+  }
   return {};
+}
+
+/// The case in as few runs as `most_hits_at_once` allows.
+std::vector<RayRun> split(const EvaluationInput& input, const RayCase& ray_case) {
+  const std::size_t rays = static_cast<std::size_t>(input.ray_image) * static_cast<std::size_t>(input.ray_image);
+  const std::size_t a_filter = rays * input.techniques.size(), an_angle = 2 * a_filter;
+  const std::size_t angles = std::max<std::size_t>(1, most_hits_at_once / std::max<std::size_t>(1, an_angle));
+  std::vector<std::vector<HeightFilter>> filters = {{HeightFilter::exact, HeightFilter::hardware}};
+  if (an_angle > most_hits_at_once) filters = {{HeightFilter::exact}, {HeightFilter::hardware}};
+  std::vector<RayRun> runs;
+  for (std::size_t first = 0; first < ray_case.angles.size(); first += angles) {
+    const auto from = ray_case.angles.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto to = from + static_cast<std::ptrdiff_t>(std::min(angles, ray_case.angles.size() - first));
+    for (const auto& some : filters) runs.push_back({input, ray_case, {from, to}, some, {}, {}});
+  }
+  return runs;
 }
 
 }  // namespace
@@ -99,14 +174,20 @@ Status run_case(const RayRun& run, OpenBackends& backends, Evaluation& evaluatio
 Status evaluate_rays(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress) {
   for (const RayCase& ray_case : input.ray_cases) {
     Oracle oracle(ray_case.height);
-    for (double angle : ray_case.angles) {
-      std::vector<Ray> rays = make_view_rays(angle, ray_case.scale, input.ray_image, input.ray_image);
-      std::vector<Hit> truth = oracle.trace(rays);
-      for (HeightFilter filter : {HeightFilter::exact, HeightFilter::hardware}) {
-        if (Status status = run_case({input, ray_case, angle, filter, rays, truth}, backends, evaluation, progress);
-            !status)
-          return status;
+    std::vector<RayRun> runs = split(input, ray_case);
+    RayRun* before = nullptr;
+    for (RayRun& run : runs) {
+      if (before && before->angles == run.angles) {
+        run.rays = std::move(before->rays);
+        run.truth = std::move(before->truth);
       }
+      if (before) before->rays.clear(), before->truth.clear();
+      before = &run;
+      for (std::size_t i = run.rays.size(); i < run.angles.size(); ++i) {
+        run.rays.push_back(make_view_rays(run.angles[i], ray_case.scale, input.ray_image, input.ray_image));
+        run.truth.push_back(oracle.trace(run.rays.back()));
+      }
+      if (Status status = run_case(run, backends, evaluation, progress); !status) return status;
     }
   }
   return {};

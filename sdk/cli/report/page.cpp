@@ -1,6 +1,7 @@
 #include "report/page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "report/html.hpp"
 
@@ -89,6 +90,24 @@ std::string machines_section(const Report& report) {
   return html + "<h3>What did not run</h3>\n" + table({{"what"}, {"because"}}, missing) + "</section>\n";
 }
 
+namespace {
+
+/// "Where the time went: baking 24.1 s, …, 80 s in all (130 s of the processors)."
+std::string time_html(const Report& report) {
+  if (report.phases.empty()) return {};
+  std::vector<std::string> parts;
+  double seconds = 0, processor_seconds = 0;
+  for (const Phase& p : report.phases) {
+    parts.push_back(fmt::format("{} {} s", p.name, fixed(p.seconds, 1)));
+    seconds += p.seconds;
+    processor_seconds += p.processor_seconds;
+  }
+  return fmt::format("<p class=\"soft\">Where the time went: {}; {} s in all, {} s of processors.</p>\n",
+                     escape(fmt::format("{}", fmt::join(parts, ", "))), fixed(seconds, 0), fixed(processor_seconds, 0));
+}
+
+}  // namespace
+
 Result<std::string> make_page(const Report& report) {
   Result<std::string> gallery = gallery_section(report);
   if (!gallery) return tl::unexpected(gallery.error());
@@ -102,6 +121,7 @@ Result<std::string> make_page(const Report& report) {
   html += "</style>\n</head>\n<body>\n";
   html += introduction(report) + checks_section(report) + machines_section(report) + speed_section(report) + *heat +
           costs_section(report) + rays_section(report) + *gallery;
+  html += time_html(report);
   html += fmt::format(
       "<p class=\"soft\">Relievo {}. The figures are in report.json and report.csv beside this "
       "page.</p>\n</body>\n</html>\n",

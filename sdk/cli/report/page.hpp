@@ -14,6 +14,7 @@ struct Report {
   Evaluation evaluation;
   Sweep sweep;
   std::vector<Plot> plots;  ///< map by map
+  std::vector<Phase> phases;
   std::vector<std::string> techniques;
   std::filesystem::path pictures;  ///< folder of Evaluation::pictures
   int ray_image = 0, repeats = 0;

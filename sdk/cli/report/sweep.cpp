@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "relievo/trace.hpp"
 
@@ -33,7 +34,8 @@ struct MapRun {
   const std::vector<Setting>& settings;
   std::vector<std::vector<Ray>> rays;  ///< one set an angle
   std::vector<std::vector<Hit>> truth;
-  MapSet maps;
+  MapSet& maps;
+  bool baked = false;
 };
 
 TraceRequest request_of(const MapRun& run, const Setting& setting, bool count_cost) {
@@ -61,7 +63,7 @@ Status bake_timed(Backend& backend, MapRun& run, const std::string& name, std::v
 
 Status bake_all(Backend& backend, MapRun& run, std::vector<MapCost>& costs) {
   const HeightMap& height = run.ray_case.height;
-  run.maps = map_set(height);
+  run.baked = true;
   costs.push_back(
       {run.ray_case.name, "height", height.width, height.height, texture_bytes(run.maps.find("height")->second), -1});
   for (const std::string& technique : run.input.techniques) {
@@ -184,7 +186,7 @@ Status time_again(MapRun& run, Backend& backend, Sweep& sweep) {
 
 MapRun make_run(const EvaluationInput& input, const SweepPlan& plan, const RayCase& ray_case,
                 const std::vector<Setting>& settings) {
-  MapRun run{input, plan, ray_case, settings, {}, {}, {}};
+  MapRun run{input, plan, ray_case, settings, {}, {}, input.baked->of(ray_case.height, "sweep")};
   Oracle oracle(ray_case.height);
   for (double angle : plan.angles) {
     run.rays.push_back(make_view_rays(angle, ray_case.scale, plan.image, plan.image));
@@ -198,6 +200,7 @@ Status sweep_backends(const EvaluationInput& input, const std::vector<Setting>& 
   Progress progress("sweep", (sweep.maps.size() + 1) * input.backends.size());
   std::vector<MapRun> runs;
   for (const RayCase& ray_case : input.ray_cases) runs.push_back(make_run(input, sweep.plan, ray_case, settings));
+  input.clock->end("oracle's rays");
   for (const std::string& name : input.backends) {
     Result<std::unique_ptr<Backend>> backend = open(name, false);
     if (!backend && backend.error().code == ErrorCode::unsupported) {
@@ -206,16 +209,20 @@ Status sweep_backends(const EvaluationInput& input, const std::vector<Setting>& 
     }
     if (!backend) return tl::unexpected(backend.error());
     sweep.backends.push_back(name);
-    for (MapRun& run : runs) {
+    const std::size_t maps = sweep.backends.size() > 1 ? std::min(runs.size(), sweep.plan.maps_elsewhere) : runs.size();
+    for (MapRun& run : std::span(runs).first(maps)) {
       progress.advance(fmt::format("{} on {}", run.ray_case.name, name));
-      if (run.maps.empty()) {
+      if (!run.baked) {
         if (Status status = bake_all(**backend, run, sweep.costs); !status) return status;
+        input.clock->end("baking");
       }
       if (Status status = sweep_map(run, **backend, sweep); !status) return status;
+      input.clock->end("sweep");
     }
     if (sweep.backends.size() > 1) continue;
     progress.advance("rerun on " + name);
     if (Status status = time_again(runs.front(), **backend, sweep); !status) return status;
+    input.clock->end("sweep, again");
   }
   return {};
 }

@@ -2,6 +2,7 @@
 /// both filters, on every backend.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,7 @@ struct SweepPlan {
   std::vector<int> budgets = {16, 64, 256};            ///< of a loop that is only a bound
   int image = 128;                                     ///< rays: image²
   int repeats = 3;
+  std::size_t maps_elsewhere = std::numeric_limits<std::size_t>::max();  ///< how many backends after the first sweep
 };
 
 struct Sweep {

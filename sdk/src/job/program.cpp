@@ -1,6 +1,7 @@
 #include "job/program.hpp"
 
 #include "compose/resolve.hpp"
+#include "job/program_cache.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -14,9 +15,12 @@ Result<PreparedProgram> prepare_composed(ComposedProgram composed, std::string_v
     if (!target) return tl::unexpected(target.error());
     targets.push_back(*target);
   }
+  if (std::optional<ShaderProgram> known = load_program(composed, shader_target))
+    return PreparedProgram{std::move(composed), *std::move(known)};
   Result<CompiledProgram> compiled = compile(composed, targets);
   if (!compiled) return tl::unexpected(compiled.error());
   ShaderProgram program = to_shader_program(composed, *compiled);
+  store_program(composed, shader_target, program);
   return PreparedProgram{std::move(composed), std::move(program)};
 }
 

@@ -220,7 +220,13 @@ Result<RenderResult> render_oracle(Backend& backend, const Registry& registry, c
   if ((*stage)->mesh == "base") hits = surface_hits(backend, registry, scene, mesh, maps, request, messages);
   if ((*stage)->mesh == "prisms") hits = exact_prism_hits(height_map_of(maps), scene, mesh);
   if (!hits) return tl::unexpected(hits.error());
-  MapSet with_hits = maps;
+  MapSet with_hits;  // of the others, what the stage itself reads: maps may be large
+  Result<std::vector<std::string>> needed = required_maps(registry, request.stage, request.technique);
+  if (!needed) return tl::unexpected(needed.error());
+  for (const std::string& map : *needed) {
+    if (const auto known = maps.find(map); known != maps.end()) with_hits.insert(*known);
+  }
+  with_hits.insert(*maps.find("height"));
   with_hits["oracle_hits"] = std::move(*hits);
   return render_once(backend, registry, scene, mesh, with_hits, request, messages);
 }

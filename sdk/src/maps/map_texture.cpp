@@ -27,7 +27,7 @@ TexelAddress texel_address(AddressMode mode) {
 template <class Stored>
 Stored stored_value(float value) {
   if constexpr (std::is_same_v<Stored, float>) return value;
-  return static_cast<Stored>(std::lround(static_cast<double>(value) * std::numeric_limits<Stored>::max()));
+  return static_cast<Stored>(value * static_cast<float>(std::numeric_limits<Stored>::max()) + 0.5f);
 }
 
 template <class Stored>
@@ -35,13 +35,18 @@ std::vector<std::byte> level_bytes(const MapData& map, const MapLevel& level, st
   const std::size_t count = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height) *
                             static_cast<std::size_t>(map.depth);
   const std::size_t channels = static_cast<std::size_t>(map.channels);
-  std::vector<Stored> values(count * stored);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t c = 0; c < channels; ++c)
-      values[i * stored + c] = stored_value<Stored>(map.texels[(level.offset + i) * channels + c]);
+  const float* values = map.texels.data() + level.offset * channels;
+  if (std::is_same_v<Stored, float> && stored == channels) {
+    const auto* first = reinterpret_cast<const std::byte*>(values);
+    return {first, first + count * channels * sizeof(float)};
   }
-  std::vector<std::byte> bytes(values.size() * sizeof(Stored));
-  std::memcpy(bytes.data(), values.data(), bytes.size());
+  std::vector<std::byte> bytes(count * stored * sizeof(Stored));
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      const Stored value = stored_value<Stored>(values[i * channels + c]);
+      std::memcpy(&bytes[(i * stored + c) * sizeof(Stored)], &value, sizeof(Stored));
+    }
+  }
   return bytes;
 }
 

@@ -69,14 +69,14 @@ TEST_F(ProgramCache, AKeptProgramIsTheCompiledOne) {
   EXPECT_EQ(cache->entries.size(), 2U);
 }
 
-TEST_F(ProgramCache, ValuesOfUniformsAndConstantsShareAnEntryAndStayTheirOwn) {
+TEST_F(ProgramCache, ValuesOfUniformsShareAnEntryAndThoseOfConstantsStayTheirOwn) {
   bytes_of(relief_with(30));
   bytes_of(relief_with(31));
   EXPECT_EQ(cache->entries.size(), 1U);
 
   bytes_of(relief_with(30, BindingTime::specialization));
   const auto kept = bytes_of(relief_with(31, BindingTime::specialization));
-  EXPECT_EQ(cache->entries.size(), 2U);
+  EXPECT_EQ(cache->entries.size(), 3U);
   use_program_cache(nullptr);
   EXPECT_EQ(bytes_of(relief_with(31, BindingTime::specialization)), kept);
   EXPECT_NE(bytes_of(relief_with(30, BindingTime::specialization)), kept);

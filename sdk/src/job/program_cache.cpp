@@ -21,7 +21,7 @@ std::shared_ptr<Cache> current() {
   return programs;
 }
 
-/// The shaders' text decides; values of uniforms and of specialization constants do not.
+/// The shaders' text decides, with the values of macros and specialization constants in it; those of uniforms do not.
 CacheKey key_of(const ComposedProgram& composed, std::string_view shader_target) {
   const std::string features = fmt::format("{}", fmt::join(composed.features, ","));
   std::vector<std::string_view> parts = {"job program", compiler_version(), shader_target, features};

@@ -79,7 +79,8 @@ TEST(Fuzz, ValuesAreWithinTheDescriptorsRanges) {
         seen[p.name].insert(value);
       }
       for (const std::string& map : technique.maps) {
-        for (const Parameter& p : registry().maps.at(map).parameters) EXPECT_TRUE(values.contains(map + "." + p.name));
+        for (const Parameter& p : registry().maps.at(map).parameters)
+          EXPECT_EQ(values.contains(map + "." + p.name), p.choices.empty()) << map << "." << p.name;
       }
     }
     for (const Parameter& p : technique.parameters) {

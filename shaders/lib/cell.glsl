@@ -11,7 +11,8 @@ float relievo_first_root(float a, float b, float c) {
     precise float q = 0.5 * (root - b);
     return q > 0.0 && a <= q ? a / q : 2.0;
   }
-  if (!(c < 0.0)) return 2.0;
+  // What rises at first comes down to 0 within [0, 1] only if c outweighs a. A discriminant that underflows cannot tell.
+  if (!(a <= -c)) return 2.0;
   precise float q = -0.5 * (b + root);
   float s = q / c;
   return s <= 1.0 ? s : 2.0;

@@ -237,7 +237,8 @@ TEST(Freeze, TurnsOneConstantIntoAnOrdinaryOneAndLeavesTheOther) {
        "layout(constant_id = 1) const float b = 2.0;\n"
        "layout(set = 0, binding = 0) buffer Out { float x; };\nvoid main() { x = float(a) * b; }\n",
        {}});
-  const auto words = run_front_end(program, 1);
+  Crew crew(1);
+  const auto words = run_front_end(program, crew);
   ASSERT_TRUE(words);
   const FrozenConstant frozen[] = {{0, 41}};
   const SpirvWords after = freeze(words->front(), frozen);
@@ -265,7 +266,8 @@ nlohmann::json cost_of(const std::string& body) {
        "layout(set = 1, binding = 0) uniform sampler2D map;\nlayout(location = 0) out vec4 color;\n" +
            body,
        {}});
-  const auto words = run_front_end(program, 1);
+  Crew crew(1);
+  const auto words = run_front_end(program, crew);
   EXPECT_TRUE(words) << (words ? "" : format(words.error()));
   return nlohmann::json::parse(describe_cost(program, *words)).at("shaders").at(0);
 }

@@ -12,9 +12,9 @@ namespace relievo::cli {
 
 namespace {
 
-constexpr std::size_t largest_job = 16384;  // rays
+constexpr std::size_t largest_job = 65536;  // rays
 constexpr std::size_t smallest_job = 64;    // as many as a work group has
-constexpr double steps_a_job = 2e7;         // a second or so on a software driver
+constexpr double steps_a_job = 1e8;         // some seconds on a software driver
 constexpr std::uint64_t least_rounds = 8;   // however few calls there are
 constexpr std::size_t findings_kept = 20;
 

@@ -16,6 +16,7 @@ bool is_finite(const Hit& hit) {
 
 bool is_inside_missed(const HeightMap& map, const Ray& ray, const Hit& truth, const Hit& found) {
   if (truth.ambiguous || truth.status != HitStatus::inside) return false;
+  if (found.status == HitStatus::exhausted) return false;  // counted apart
   if (sample_height(map, ray.u, ray.v) - ray.h <= certain_depth) return false;
   return found.status != HitStatus::inside || found.t != 0;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -95,6 +96,15 @@ inline double lattice_noise(int i, int j, std::uint64_t seed) {
 /// Every texel independent and uniform.
 inline HeightMap white_noise_map(int width, int height, std::uint64_t seed = 1) {
   return make_map(width, height, [=](int i, int j) { return lattice_noise(i, j, seed); });
+}
+
+/// 0 but for a quarter of the texels, whose heights are where floats and comparisons end.
+inline HeightMap specks_map(int width, int height, std::uint64_t seed = 1) {
+  constexpr std::array<double, 9> ends = {1, 1 - 6e-8, 0.5, 0.25, 3e-3, 1e-7, 1.2e-38, 1e-39, 1.4e-45};
+  return make_map(width, height, [=](int i, int j) {
+    if (lattice_noise(i, j, seed) > 0.25) return 0.0;
+    return ends[static_cast<std::size_t>(lattice_noise(i, j, seed + 1) * ends.size()) % ends.size()];
+  });
 }
 
 /// Value noise of period 1: `frequency` knots along each axis, with a smoothstep in between.

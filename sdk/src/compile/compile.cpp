@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <numeric>
 #include <optional>
 #include <set>
 
@@ -16,7 +15,6 @@
 #include "compile/interface.hpp"
 #include "compile/lint.hpp"
 #include "compile/optimize.hpp"
-#include "compile/parallel.hpp"
 #include "compile/reflection.hpp"
 
 namespace relievo {
@@ -69,9 +67,13 @@ Result<ShaderModule> parse_shipped(ShaderStage stage, SpirvWords words, const Sp
 
 Result<std::vector<ShaderModule>> make_modules(const ComposedProgram& program,
                                                std::span<const SpirvWords> front_end_words,
-                                               const CompileOptions& options) {
+                                               const CompileOptions& options, Crew& crew) {
   std::vector<std::optional<Result<ShaderModule>>> results(program.shaders.size());
-  run_parallel(results.size(), options.threads, [&](std::size_t i) {
+  std::vector<std::size_t> sizes;
+  for (const SpirvWords& words : front_end_words) sizes.push_back(words.size());
+  const std::vector<std::size_t> order = largest_first(sizes);
+  crew.run(order.size(), [&](std::size_t k) {
+    const std::size_t i = order[k];
     Result<SpirvWords> words = finish_words(front_end_words[i], options, program.key);
     results[i] =
         words ? parse_shipped(program.shaders[i].stage, *std::move(words), front_end_words[i], options, program.key)
@@ -104,23 +106,16 @@ struct Outputs {
   Result<std::string> reflection;
 };
 
-/// The order in which the modules' tasks begin: long ones last would leave the other threads idle.
-std::vector<std::size_t> largest_first(std::span<const ShaderModule> modules) {
-  std::vector<std::size_t> order(modules.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return modules[a].spirv->size() > modules[b].spirv->size(); });
-  return order;
-}
-
 /// Emits beside validating: the optimizer has trusted the front end's words before.
 Outputs make_outputs(const ComposedProgram& program, const EmitContext& context, std::span<const ShaderModule> modules,
-                     const BindingLayout& layout, std::span<const Target> targets, const CompileOptions& options) {
+                     const BindingLayout& layout, std::span<const Target> targets, bool validate, Crew& crew) {
   const std::vector<TargetFamily> families = group_targets(targets);
   const std::vector<StageNeighbours> neighbours = find_neighbours(modules);
   Outputs outputs(modules.size());
   std::vector<std::function<void()>> tasks;
-  for (const std::size_t i : largest_first(modules)) {
+  std::vector<std::size_t> sizes;
+  for (const ShaderModule& module : modules) sizes.push_back(module.spirv->size());
+  for (const std::size_t i : largest_first(sizes)) {
     outputs.texts[i].resize(families.size());
     for (std::size_t f = 0; f < families.size(); ++f) {
       tasks.emplace_back([&, i, f] {
@@ -129,12 +124,12 @@ Outputs make_outputs(const ComposedProgram& program, const EmitContext& context,
             context.memo ? context.memo->texts(families[f], modules[i], layout, neighbours[i], emit) : emit();
       });
     }
-    if (!options.validate) continue;
+    if (!validate) continue;
     tasks.emplace_back(
         [&, i] { outputs.valid[i] = validate_pipeline(context.front_end_words[i], *modules[i].spirv, program.key); });
   }
   tasks.emplace_back([&] { outputs.reflection = make_reflection(program, modules, layout, targets); });
-  run_parallel(tasks.size(), options.threads, [&](std::size_t task) { tasks[task](); });
+  crew.run(tasks.size(), [&](std::size_t task) { tasks[task](); });
   return outputs;
 }
 
@@ -175,23 +170,24 @@ CompiledProgram collect(const ComposedProgram& program, std::span<const Target> 
 Result<CompiledProgram> run_pipeline(const ComposedProgram& program, std::span<const Target> targets,
                                      const CompileOptions& options, std::string_view fallback_stage) {
   if (auto ok = check_request(program, targets, fallback_stage); !ok) return tl::unexpected(ok.error());
-  Result<std::vector<SpirvWords>> front_end_words = run_front_end(program, options.threads);
+  Crew crew(options.threads);
+  Result<std::vector<SpirvWords>> front_end_words = run_front_end(program, crew);
   if (!front_end_words) return tl::unexpected(front_end_words.error());
-  const Result<std::vector<ShaderModule>> modules = make_modules(program, *front_end_words, options);
+  const Result<std::vector<ShaderModule>> modules = make_modules(program, *front_end_words, options, crew);
   if (!modules) return tl::unexpected(modules.error());
-  return emit_program(program, *modules, targets, options, fallback_stage, {*front_end_words, nullptr});
+  return emit_program(program, *modules, targets, options, fallback_stage, {*front_end_words, nullptr}, crew);
 }
 
 }  // namespace
 
 Result<CompiledProgram> emit_program(const ComposedProgram& program, std::span<const ShaderModule> modules,
                                      std::span<const Target> targets, const CompileOptions& options,
-                                     std::string_view fallback_stage, const EmitContext& context) {
+                                     std::string_view fallback_stage, const EmitContext& context, Crew& crew) {
   if (auto ok = check_modules(modules, program, targets, fallback_stage); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_interfaces(modules, program.key); !ok) return tl::unexpected(ok.error());
   Result<BindingLayout> layout = make_binding_layout(modules, program.key);
   if (!layout) return tl::unexpected(layout.error());
-  Outputs outputs = make_outputs(program, context, modules, *layout, targets, options);
+  Outputs outputs = make_outputs(program, context, modules, *layout, targets, options.validate, crew);
   if (auto ok = check_outputs(outputs); !ok) return tl::unexpected(ok.error());
   return collect(program, targets, *layout, modules, std::move(outputs));
 }

@@ -1,6 +1,7 @@
 #include "compile/complexity.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <vector>
 
@@ -13,6 +14,13 @@ struct Level {
   int operators = 0;
   bool is_call = false;
 };
+
+/// What a scan must look at: everything else is letters, digits and space, which are most of a text.
+constexpr std::array<bool, 256> kMarks = [] {
+  std::array<bool, 256> marks{};
+  for (const char c : std::string_view("(){}[];#+-*/%&|^<>=?:,.")) marks[static_cast<unsigned char>(c)] = true;
+  return marks;
+}();
 
 bool is_name(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
@@ -41,8 +49,12 @@ class Scanner {
     } else if (is_operator(c, next)) {
       ++levels_.back().operators;
     }
-    if (std::isspace(static_cast<unsigned char>(c)) == 0) previous_ = c;
+    previous_ = c;
     return levels_.back().operators > kMaxChainedOperators;
+  }
+  /// For what is not a mark.
+  void pass(char c) {
+    if (c > ' ') previous_ = c;
   }
 
  private:
@@ -60,6 +72,10 @@ class Scanner {
 bool has_runaway_expression(std::string_view source) {
   Scanner scanner;
   for (std::size_t at = 0; at < source.size();) {
+    if (!kMarks[static_cast<unsigned char>(source[at])]) {
+      scanner.pass(source[at++]);
+      continue;
+    }
     if (const std::size_t skipped = skipped_length(source.substr(at)); skipped != 0) {
       at += skipped;
       continue;

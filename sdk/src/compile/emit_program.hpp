@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "compile/emit_memo.hpp"
+#include "compile/parallel.hpp"
 #include "compile/shader_module.hpp"
 #include "relievo/compile.hpp"
 
@@ -19,6 +20,6 @@ struct EmitContext {
 /// "compile.spirv-invalid", "compile.emit", "compile.binding-collision". May throw std::exception.
 Result<CompiledProgram> emit_program(const ComposedProgram& program, std::span<const ShaderModule> modules,
                                      std::span<const Target> targets, const CompileOptions& options,
-                                     std::string_view fallback_stage, const EmitContext& context);
+                                     std::string_view fallback_stage, const EmitContext& context, Crew& crew);
 
 }  // namespace relievo

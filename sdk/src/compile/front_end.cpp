@@ -12,7 +12,6 @@
 
 #include "compile/complexity.hpp"
 #include "compile/diagnostics.hpp"
-#include "compile/parallel.hpp"
 
 namespace relievo {
 
@@ -91,12 +90,18 @@ tl::unexpected<Error> too_complex(const ComposedShader& source, std::string_view
 }
 
 /// Parses every shader; the first error in their order is the one reported.
-Status parse_all(std::span<const std::unique_ptr<ParsedShader>> shaders, unsigned threads,
+Status parse_all(std::span<const std::unique_ptr<ParsedShader>> shaders, std::span<const std::size_t> order, Crew& crew,
                  const ComposedProgram& program) {
-  std::vector<char> parsed(shaders.size());
-  run_parallel(shaders.size(), threads, [&](std::size_t i) { parsed[i] = shaders[i]->parse(); });
+  enum class Outcome : char { parsed, too_complex, wrong };
+  std::vector<Outcome> outcomes(shaders.size(), Outcome::too_complex);
+  crew.run(order.size(), [&](std::size_t k) {
+    const std::size_t i = order[k];
+    if (has_runaway_expression(program.shaders[i].text)) return;
+    outcomes[i] = shaders[i]->parse() ? Outcome::parsed : Outcome::wrong;
+  });
   for (std::size_t i = 0; i < shaders.size(); ++i) {
-    if (parsed[i]) continue;
+    if (outcomes[i] == Outcome::parsed) continue;
+    if (outcomes[i] == Outcome::too_complex) return too_complex(program.shaders[i], program.key);
     Error error = glsl_error(shaders[i]->shader().getInfoLog(), program.key);
     error.column = find_column(program.shaders[i].text, error);
     return tl::unexpected(std::move(error));
@@ -106,23 +111,26 @@ Status parse_all(std::span<const std::unique_ptr<ParsedShader>> shaders, unsigne
 
 }  // namespace
 
-Result<std::vector<SpirvWords>> run_front_end(const ComposedProgram& program, unsigned threads) {
+Result<std::vector<SpirvWords>> run_front_end(const ComposedProgram& program, Crew& crew) {
   initialize_once();
   // Destroyed last: glslang keeps pointing at the thread's pool.
   std::vector<glslang::TPoolAllocator> pools(program.shaders.size());
   glslang::SetThreadPoolAllocator(&pools.front());
   std::vector<std::unique_ptr<ParsedShader>> shaders;
+  std::vector<std::size_t> sizes;
   glslang::TProgram linked;  // destroyed before the shaders it refers to
   for (const ComposedShader& source : program.shaders) {
-    if (has_runaway_expression(source.text)) return too_complex(source, program.key);
     shaders.push_back(std::make_unique<ParsedShader>(source));
+    sizes.push_back(source.text.size());
     linked.addShader(&shaders.back()->shader());
   }
-  if (auto ok = parse_all(shaders, threads, program); !ok) return tl::unexpected(ok.error());
+  const std::vector<std::size_t> order = largest_first(sizes);
+  if (auto ok = parse_all(shaders, order, crew, program); !ok) return tl::unexpected(ok.error());
   if (!linked.link(kMessages)) return tl::unexpected(glsl_error(linked.getInfoLog(), program.key));
 
   std::vector<SpirvWords> modules(shaders.size());
-  run_parallel(shaders.size(), threads, [&](std::size_t i) {
+  crew.run(order.size(), [&](std::size_t k) {
+    const std::size_t i = order[k];
     modules[i] = generate_spirv(*linked.getIntermediate(shaders[i]->shader().getStage()), pools[i]);
   });
   return modules;

@@ -37,7 +37,8 @@ Result<SpirvWords> front_end(const ComposedShader& shader, const std::string& na
   ComposedProgram alone;
   alone.key = name;
   alone.shaders = {shader};
-  const Result<std::vector<SpirvWords>> words = run_front_end(alone, 1);
+  Crew this_thread(1);
+  const Result<std::vector<SpirvWords>> words = run_front_end(alone, this_thread);
   if (!words) return tl::unexpected(words.error());
   if (Status ok = lint_implicit_lod_in_loop(words->front(), name); !ok) return tl::unexpected(ok.error());
   return strip_lines(words->front());
@@ -227,8 +228,9 @@ Result<ProgramImage> ClosureCompiler::emit(const ClosureTask& task, std::span<co
   CompileOptions options;
   options.validate = false;      // each module was, once
   program.key = to_string(key);  // what the reflection calls it: many permutations share it
+  Crew this_thread(1);
   Result<CompiledProgram> compiled =
-      emit_program(program, modules, task.targets, options, task.closure.fallback, {{}, &memo});
+      emit_program(program, modules, task.targets, options, task.closure.fallback, {{}, &memo}, this_thread);
   if (!compiled) return tl::unexpected(named(compiled.error(), program.key, task.closure.program.key));
   return image_of(*std::move(compiled), task.targets, std::move(cost));
 }

@@ -1,6 +1,7 @@
 /// The drawing stages: pictures per backend, repeated, against each other, the oracle and the finely displaced mesh.
 #include <fmt/format.h>
 #include <optional>
+#include <span>
 
 #include "evaluation/evaluation.hpp"
 #include "relievo/image.hpp"
@@ -179,18 +180,33 @@ Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, E
 
 namespace {
 
-Status count_scene_cracks(SceneRun& run, const std::string& stage, const Pixels& reference,
+constexpr std::uint64_t crack_seeds = 3;
+
+/// Every technique's prisms under all random vertex orders, in one Job.
+Status count_scene_cracks(SceneRun& run, std::span<const Mesh> shuffled, const Pixels& reference,
                           const std::string& technique) {
-  constexpr std::uint64_t seeds = 3;
-  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    Mesh shuffled = shuffle(run.parts.mesh, seed);
-    RenderRequest request{stage, technique, HeightFilter::exact, Aov::color, run.input.values};
-    Result<RenderResult> result = render(run.backend, *run.input.registry, run.parts.scene, shuffled, run.maps, request,
-                                         &run.evaluation.messages);
-    if (!result) return tl::unexpected(result.error());
-    const SceneImage& size = run.parts.scene.image;
-    run.evaluation.cracks.push_back({run.scene_name, technique, run.backend.info().name, seed,
-                                     count_cracks(result->color, reference, size.width, size.height)});
+  const Registry& registry = *run.input.registry;
+  RenderRequest request{"prism", technique, HeightFilter::exact, Aov::color, run.input.values};
+  Result<std::vector<std::string>> needed = required_maps(registry, request.stage, technique);
+  if (!needed) return tl::unexpected(needed.error());
+  for (const std::string& map : *needed) {
+    if (Status status = bake_map(run.backend, registry, map, run.maps, request.values, &run.evaluation.messages);
+        !status)
+      return status;
+  }
+  Result<Job> job =
+      make_render_job(registry, run.parts.scene, shuffled, run.maps, request, run.backend.info().shader_target);
+  if (!job) return tl::unexpected(job.error());
+  Result<JobResult> result = run.backend.execute(*job);
+  if (!result) return tl::unexpected(result.error());
+  std::vector<std::string>& messages = run.evaluation.messages;
+  messages.insert(messages.end(), result->messages.begin(), result->messages.end());
+  const SceneImage& size = run.parts.scene.image;
+  for (std::size_t k = 0; k < shuffled.size(); ++k) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(result->read_backs[k].data());
+    const Pixels pixels(bytes, bytes + result->read_backs[k].size());
+    run.evaluation.cracks.push_back({run.scene_name, technique, run.backend.info().name, k + 1,
+                                     count_cracks(pixels, reference, size.width, size.height)});
   }
   return {};
 }
@@ -202,6 +218,8 @@ Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Eva
   auto stage = input.registry->stages.find("prism");
   if (stage == input.registry->stages.end()) return {};
   for (const auto& [name, parts] : input.scenes) {
+    std::vector<Mesh> shuffled;
+    for (std::uint64_t seed = 1; seed <= crack_seeds; ++seed) shuffled.push_back(shuffle(parts.mesh, seed));
     for (auto& [backend_name, backend] : backends) {
       if (!backend->info().features.contains("geometry")) continue;
       progress.advance(fmt::format("cracks {} {}", name, backend_name));
@@ -210,7 +228,7 @@ Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Eva
       if (!reference) return tl::unexpected(reference.error());
       for (const std::string& technique : input.techniques) {
         if (!holds_silhouette(*input.registry, technique)) continue;
-        if (Status status = count_scene_cracks(run, "prism", reference->color, technique); !status) return status;
+        if (Status status = count_scene_cracks(run, shuffled, reference->color, technique); !status) return status;
       }
     }
   }

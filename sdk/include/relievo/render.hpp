@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,11 @@ Result<std::vector<std::byte>> scene_block(const Scene& scene);
 /// the maps that the permutation reads (all of required_maps will do), else the error is "render.missing-map".
 Result<Job> make_render_job(const Registry& registry, const Scene& scene, const Mesh& mesh, const MapSet& maps,
                             const RenderRequest& request, std::string_view shader_target);
+
+/// The same for several meshes in place of the scene's, each in a picture of its own: command and read-back k are those
+/// of mesh k. They share the program and the maps.
+Result<Job> make_render_job(const Registry& registry, const Scene& scene, std::span<const Mesh> meshes,
+                            const MapSet& maps, const RenderRequest& request, std::string_view shader_target);
 
 /// Bakes what is missing in `maps`, makes the job and runs it.
 Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,

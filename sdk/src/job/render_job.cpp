@@ -110,8 +110,8 @@ Result<std::vector<std::byte>> scene_block(const Scene& scene) {
   return std::vector<std::byte>(bytes, bytes + sizeof(block));
 }
 
-Result<Job> make_render_job(const Registry& registry, const Scene& scene, const Mesh& mesh, const MapSet& maps,
-                            const RenderRequest& request, std::string_view shader_target) {
+Result<Job> make_render_job(const Registry& registry, const Scene& scene, std::span<const Mesh> meshes,
+                            const MapSet& maps, const RenderRequest& request, std::string_view shader_target) {
   Result<const StageDescriptor*> stage = registry.stage(request.stage);
   if (!stage) return tl::unexpected(stage.error());
   if ((*stage)->mesh == "none") {
@@ -134,23 +134,32 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
 
   Job job;
   job.name = "render " + prepared->composed.key;
-  int tessellation =
-      (*stage)->mesh == "tessellated" ? tessellation_of(prepared->composed, scene, mesh.triangles.size()) : 1;
-  Draw draw = make_draw(**stage, make_mesh_buffers(mesh, scene.displacement.units, tessellation), job);
-  bind_maps(prepared->composed, maps, job, draw.resources);
-  bind_parameters(prepared->composed, job, draw.resources);
+  std::vector<ResourceBinding> resources;
+  bind_maps(prepared->composed, maps, job, resources);
+  bind_parameters(prepared->composed, job, resources);
   Result<std::vector<std::byte>> block = scene_block(scene);
   if (!block) return tl::unexpected(block.error());
-  bind_buffer(0, scene_binding, make_buffer("Scene", block->data(), block->size()), job, draw.resources);
-  keep_contract(prepared->program, draw.resources);
-  int color =
-      add_target(job, "color", request.aov == Aov::color ? Format::rgba8_unorm : Format::rgba32_float, scene.image);
-  draw.color_targets = {color};
-  draw.depth_target = add_target(job, "depth", Format::d32_float, scene.image);
+  bind_buffer(0, scene_binding, make_buffer("Scene", block->data(), block->size()), job, resources);
+  keep_contract(prepared->program, resources);
+  for (const Mesh& mesh : meshes) {
+    int tessellation =
+        (*stage)->mesh == "tessellated" ? tessellation_of(prepared->composed, scene, mesh.triangles.size()) : 1;
+    Draw draw = make_draw(**stage, make_mesh_buffers(mesh, scene.displacement.units, tessellation), job);
+    draw.resources = resources;
+    int color =
+        add_target(job, "color", request.aov == Aov::color ? Format::rgba8_unorm : Format::rgba32_float, scene.image);
+    draw.color_targets = {color};
+    draw.depth_target = add_target(job, "depth", Format::d32_float, scene.image);
+    job.commands.emplace_back(std::move(draw));
+    job.read_backs.push_back({ReadBack::Source::texture, color, 0});
+  }
   job.programs.push_back(std::move(prepared->program));
-  job.commands.emplace_back(std::move(draw));
-  job.read_backs.push_back({ReadBack::Source::texture, color, 0});
   return job;
+}
+
+Result<Job> make_render_job(const Registry& registry, const Scene& scene, const Mesh& mesh, const MapSet& maps,
+                            const RenderRequest& request, std::string_view shader_target) {
+  return make_render_job(registry, scene, std::span<const Mesh>(&mesh, 1), maps, request, shader_target);
 }
 
 namespace {

@@ -182,31 +182,17 @@ namespace {
 
 constexpr std::uint64_t crack_seeds = 3;
 
-/// Every technique's prisms under all random vertex orders, in one Job.
+/// Of a technique's prisms, under all random vertex orders.
 Status count_scene_cracks(SceneRun& run, std::span<const Mesh> shuffled, const Pixels& reference,
                           const std::string& technique) {
-  const Registry& registry = *run.input.registry;
   RenderRequest request{"prism", technique, HeightFilter::exact, Aov::color, run.input.values};
-  Result<std::vector<std::string>> needed = required_maps(registry, request.stage, technique);
-  if (!needed) return tl::unexpected(needed.error());
-  for (const std::string& map : *needed) {
-    if (Status status = bake_map(run.backend, registry, map, run.maps, request.values, &run.evaluation.messages);
-        !status)
-      return status;
-  }
-  Result<Job> job =
-      make_render_job(registry, run.parts.scene, shuffled, run.maps, request, run.backend.info().shader_target);
-  if (!job) return tl::unexpected(job.error());
-  Result<JobResult> result = run.backend.execute(*job);
-  if (!result) return tl::unexpected(result.error());
-  std::vector<std::string>& messages = run.evaluation.messages;
-  messages.insert(messages.end(), result->messages.begin(), result->messages.end());
+  Result<std::vector<RenderResult>> drawn =
+      render(run.backend, *run.input.registry, run.parts.scene, shuffled, run.maps, request, &run.evaluation.messages);
+  if (!drawn) return tl::unexpected(drawn.error());
   const SceneImage& size = run.parts.scene.image;
-  for (std::size_t k = 0; k < shuffled.size(); ++k) {
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(result->read_backs[k].data());
-    const Pixels pixels(bytes, bytes + result->read_backs[k].size());
+  for (std::size_t k = 0; k < drawn->size(); ++k) {
     run.evaluation.cracks.push_back({run.scene_name, technique, run.backend.info().name, k + 1,
-                                     count_cracks(pixels, reference, size.width, size.height)});
+                                     count_cracks((*drawn)[k].color, reference, size.width, size.height)});
   }
   return {};
 }

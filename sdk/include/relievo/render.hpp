@@ -46,8 +46,13 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
 Result<Job> make_render_job(const Registry& registry, const Scene& scene, std::span<const Mesh> meshes,
                             const MapSet& maps, const RenderRequest& request, std::string_view shader_target);
 
-/// Bakes what is missing in `maps`, makes the job and runs it.
+/// Bakes what is missing in `maps`, makes the job and runs it. With several meshes: a result for each, of one Job (but
+/// the oracle's, whose hits are those of a mesh, of one each).
 Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
                             MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages = nullptr);
+
+Result<std::vector<RenderResult>> render(Backend& backend, const Registry& registry, const Scene& scene,
+                                         std::span<const Mesh> meshes, MapSet& maps, const RenderRequest& request,
+                                         std::vector<std::string>* messages = nullptr);
 
 }  // namespace relievo

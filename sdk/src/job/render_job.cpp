@@ -177,32 +177,47 @@ Image to_image(const std::vector<std::byte>& bytes, const SceneImage& size, Aov 
   return image;
 }
 
-}  // namespace
+RenderResult result_of(const Mesh& mesh, const std::vector<std::byte>& pixels, const SceneImage& size, Aov aov) {
+  RenderResult rendered;
+  rendered.image = to_image(pixels, size, aov);
+  if (aov == Aov::color) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(pixels.data());
+    rendered.color.assign(bytes, bytes + pixels.size());
+  }
+  for (const TriangleFrame& frame : triangle_frames(mesh)) rendered.degenerate_triangles += frame.degenerate;
+  return rendered;
+}
 
-namespace {
-
-Result<RenderResult> render_once(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
-                                 MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
+Result<std::vector<RenderResult>> render_meshes(Backend& backend, const Registry& registry, const Scene& scene,
+                                                std::span<const Mesh> meshes, MapSet& maps,
+                                                const RenderRequest& request, std::vector<std::string>* messages) {
   Result<std::vector<std::string>> needed = required_maps(registry, request.stage, request.technique);
   if (!needed) return tl::unexpected(needed.error());
   for (const std::string& map : *needed) {
     if (Status status = bake_map(backend, registry, map, maps, request.values, messages); !status)
       return tl::unexpected(status.error());
   }
-  Result<Job> job = make_render_job(registry, scene, mesh, maps, request, backend.info().shader_target);
+  Result<Job> job = make_render_job(registry, scene, meshes, maps, request, backend.info().shader_target);
   if (!job) return tl::unexpected(job.error());
   Result<JobResult> result = backend.execute(*job);
   if (!result) return tl::unexpected(result.error());
   append_messages(*result, messages);
-  RenderResult rendered;
-  rendered.image = to_image(result->read_backs.at(0), scene.image, request.aov);
-  if (request.aov == Aov::color) {
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(result->read_backs[0].data());
-    rendered.color.assign(bytes, bytes + result->read_backs[0].size());
+  std::vector<RenderResult> rendered;
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    rendered.push_back(result_of(meshes[k], result->read_backs.at(k), scene.image, request.aov));
+    if (!result->command_seconds.empty()) rendered.back().seconds = result->command_seconds[k];
   }
-  if (!result->command_seconds.empty()) rendered.seconds = result->command_seconds.front();
-  for (const TriangleFrame& frame : triangle_frames(mesh)) rendered.degenerate_triangles += frame.degenerate;
   return rendered;
+}
+
+Result<RenderResult> only(Result<std::vector<RenderResult>> rendered) {
+  if (!rendered) return tl::unexpected(rendered.error());
+  return std::move(rendered->front());
+}
+
+Result<RenderResult> render_once(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
+                                 MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
+  return only(render_meshes(backend, registry, scene, {&mesh, 1}, maps, request, messages));
 }
 
 /// The rays of the pixels come from the stage itself, written as pictures.
@@ -242,11 +257,23 @@ Result<RenderResult> render_oracle(Backend& backend, const Registry& registry, c
 
 }  // namespace
 
+Result<std::vector<RenderResult>> render(Backend& backend, const Registry& registry, const Scene& scene,
+                                         std::span<const Mesh> meshes, MapSet& maps, const RenderRequest& request,
+                                         std::vector<std::string>* messages) {
+  const bool replay = request.technique == "oracle" && !maps.contains("oracle_hits");
+  if (!replay) return render_meshes(backend, registry, scene, meshes, maps, request, messages);
+  std::vector<RenderResult> rendered;
+  for (const Mesh& mesh : meshes) {
+    Result<RenderResult> one = render_oracle(backend, registry, scene, mesh, maps, request, messages);
+    if (!one) return tl::unexpected(one.error());
+    rendered.push_back(std::move(*one));
+  }
+  return rendered;
+}
+
 Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
                             MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
-  bool replay = request.technique == "oracle" && !maps.contains("oracle_hits");
-  return replay ? render_oracle(backend, registry, scene, mesh, maps, request, messages)
-                : render_once(backend, registry, scene, mesh, maps, request, messages);
+  return only(render(backend, registry, scene, std::span<const Mesh>(&mesh, 1), maps, request, messages));
 }
 
 }  // namespace relievo

@@ -33,6 +33,7 @@ BackendInfo read_info(const Limits& limits) {
   info.features = {"compute",        "geometry",      "tessellation", "explicit_lod",   "texture_3d", "gather",
                    "vertex_texture", "dynamic_loops", "depth_write",  "linear_float32", "validation"};
   if (limits.timestamp_bits > 0) info.features.insert("timestamps");
+  info.max_storage_buffer = static_cast<std::size_t>(limits.storage_block_size);
   return info;
 }
 

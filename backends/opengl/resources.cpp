@@ -27,12 +27,19 @@ int level_extent(int extent, int level) {
 }
 
 BufferHandle upload_buffer(const Buffer& buffer) {
-  std::vector<std::byte> bytes = buffer.data;
-  bytes.resize(padded_size(buffer));
   GLuint name = 0;
   glCreateBuffers(1, &name);
-  glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes.size()), bytes.data(), 0);
-  return BufferHandle(name);
+  BufferHandle handle(name);
+  const auto size = static_cast<GLsizeiptr>(padded_size(buffer));
+  if (buffer.data.empty()) {
+    glNamedBufferStorage(name, size, nullptr, 0);
+    glClearNamedBufferData(name, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+    return handle;
+  }
+  std::vector<std::byte> bytes = buffer.data;
+  bytes.resize(padded_size(buffer));
+  glNamedBufferStorage(name, size, bytes.data(), 0);
+  return handle;
 }
 
 void upload_level(GLuint name, const Texture& texture, int level) {

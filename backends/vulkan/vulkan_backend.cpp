@@ -33,6 +33,7 @@ BackendInfo info_of(const DeviceTraits& device) {
   if (device.timestamp_bits > 0) info.features.insert("timestamps");
   if (device.filters_float32) info.features.insert("linear_float32");
   if (has_validation_layer()) info.features.insert("validation");
+  info.max_storage_buffer = device.properties.limits.maxStorageBufferRange;
   return info;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "bake_memory.hpp"
 #include "common.hpp"
 #include "relievo/image.hpp"
 
@@ -32,10 +33,38 @@ std::map<std::string, double> values_of(const MapDescriptor& map, const std::map
   return values;
 }
 
-nlohmann::json json_of(const MapData& map, double seconds, const std::string& output, bool is_picture) {
-  return {{"map", map.name},      {"width", map.width},       {"height", map.height},   {"layers", map.depth},
-          {"levels", map.levels}, {"channels", map.channels}, {"bits", map.bits},       {"bytes", texture_bytes(map)},
-          {"seconds", seconds},   {"output", output},         {"lossless", !is_picture}};
+struct Cost {
+  double seconds = 0;
+  double command_seconds = 0;     ///< of them, those on the device
+  std::size_t device_bytes = 0;   ///< of the largest Job
+  std::size_t process_bytes = 0;  ///< by which the process's peak rose; 0 where that is not known
+};
+
+nlohmann::json json_of(const MapData& map, const Cost& cost, const std::string& output, bool is_picture) {
+  return {{"map", map.name},
+          {"width", map.width},
+          {"height", map.height},
+          {"layers", map.depth},
+          {"levels", map.levels},
+          {"channels", map.channels},
+          {"bits", map.bits},
+          {"bytes", texture_bytes(map)},
+          {"seconds", cost.seconds},
+          {"command_seconds", cost.command_seconds},
+          {"peak_device_bytes", cost.device_bytes},
+          {"peak_process_bytes", cost.process_bytes},
+          {"output", output},
+          {"lossless", !is_picture}};
+}
+
+Result<Cost> bake(Backend& backend, const Registry& registry, const std::string& map, MapSet& maps,
+                  const std::map<std::string, double>& values) {
+  MeteredBackend metered(backend);
+  const std::size_t before = process_peak_bytes();
+  const auto start = std::chrono::steady_clock::now();
+  if (Status status = bake_map(metered, registry, map, maps, values); !status) return tl::unexpected(status.error());
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return Cost{seconds, metered.command_seconds(), metered.peak_bytes(), process_peak_bytes() - before};
 }
 
 Status run_bake(const Context& context, const BakeOptions& options) {
@@ -54,19 +83,18 @@ Status run_bake(const Context& context, const BakeOptions& options) {
   Result<std::unique_ptr<Backend>> backend = open(options.backend, false);
   if (!backend) return tl::unexpected(backend.error());
   MapSet maps = map_set(*height);
-  auto start = std::chrono::steady_clock::now();
-  if (Status status = bake_map(**backend, *registry, options.map, maps, settings->values); !status) return status;
-  double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const Result<Cost> cost = bake(**backend, *registry, options.map, maps, settings->values);
+  if (!cost) return tl::unexpected(cost.error());
   const MapData& map = maps.at(options.map);
   const bool is_picture = map.bits == 32 && std::filesystem::path(options.output).extension() == ".png";
   Status written = is_picture ? write_picture(map, options.output)
                               : write_map(options.output, map, values_of(**descriptor, settings->values));
   if (!written) return written;
   if (context.json) {
-    fmt::print("{}\n", json_of(map, seconds, options.output, is_picture).dump(2));
+    fmt::print("{}\n", json_of(map, *cost, options.output, is_picture).dump(2));
   } else {
     fmt::print("{}: {}x{}x{}, {} levels, {} channels, {} bytes, {:.3f} s -> {}{}\n", map.name, map.width, map.height,
-               map.depth, map.levels, map.channels, texture_bytes(map), seconds, options.output,
+               map.depth, map.levels, map.channels, texture_bytes(map), cost->seconds, options.output,
                is_picture ? " (a picture: 8 bits, one level)" : "");
   }
   return {};

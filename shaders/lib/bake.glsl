@@ -1,4 +1,4 @@
-// Host of a map's bake module: runs relievo_bake once for every texel of the map (of every layer, if it is 3D).
+// Host of a map's bake module: runs relievo_bake once for every texel of the map (of every layer, if it has several).
 // A module defines `void relievo_bake(ivec2 texel)`, reads its input maps and writes with relievo_bake_write.
 #include "ray.glsl"
 
@@ -7,27 +7,30 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140, set = 0, binding = 1) uniform Bake {
   ivec4 relievo_bake_size;    // width, height, channels, level
   ivec4 relievo_bake_source;  // of the level below: width, height, offset; offset of this level, in texels
-  ivec4 relievo_bake_layers;  // how many, pass
+  ivec4 relievo_bake_layers;  // how many, pass, floats in a buffer, the first of this dispatch
 };
-layout(std430, set = 0, binding = 2) buffer MapTexels { float relievo_map_texels[]; };
+#include "bake_buffers.glsl"
 
 ivec2 relievo_bake_extent() { return relievo_bake_size.xy; }
 
-int relievo_bake_layer() { return int(gl_GlobalInvocationID.z); }
+int relievo_bake_layer() { return relievo_bake_layers.w + int(gl_GlobalInvocationID.z); }
 int relievo_bake_layer_count() { return relievo_bake_layers.x; }
 
+// Where a value of this level lies among the layers that are baked together.
+int relievo_bake_index(ivec2 texel, int layer, int channel) {
+  int row = (layer - relievo_bake_layers.w) * relievo_bake_size.y + texel.y;
+  return (relievo_bake_source.w + row * relievo_bake_size.x + texel.x) * relievo_bake_size.z + channel;
+}
+
 void relievo_bake_write(ivec2 texel, int channel, float value) {
-  int row = relievo_bake_layer() * relievo_bake_size.y + texel.y;
-  int index = (relievo_bake_source.w + row * relievo_bake_size.x + texel.x) * relievo_bake_size.z + channel;
-  relievo_map_texels[index] = value;
+  relievo_map_store(relievo_bake_index(texel, relievo_bake_layer(), channel), value);
 }
 
 int relievo_bake_pass() { return relievo_bake_layers.y; }
 
-// What an earlier pass wrote at this level.
+// What an earlier pass wrote at this level. Other layers than one's own are there unless the map has them apart (map.toml).
 float relievo_bake_read(ivec2 texel, int layer, int channel) {
-  int row = layer * relievo_bake_size.y + texel.y;
-  return relievo_map_texels[(relievo_bake_source.w + row * relievo_bake_size.x + texel.x) * relievo_bake_size.z + channel];
+  return relievo_map_load(relievo_bake_index(texel, layer, channel));
 }
 
 int relievo_bake_level() { return relievo_bake_size.w; }
@@ -36,7 +39,7 @@ int relievo_bake_level() { return relievo_bake_size.w; }
 float relievo_bake_read_below(ivec2 texel, int channel) {
   ivec2 inside = clamp(texel, ivec2(0), relievo_bake_source.xy - 1);
   int index = (relievo_bake_source.z + inside.y * relievo_bake_source.x + inside.x) * relievo_bake_size.z + channel;
-  return relievo_map_texels[index];
+  return relievo_map_load(index);
 }
 
 void relievo_bake(ivec2 texel);

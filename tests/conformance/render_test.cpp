@@ -118,6 +118,22 @@ TEST(Render, PrismsHaveTheSilhouetteOfTheDisplacedMeshAndNoCracks) {
   }
 }
 
+/// The oracle's hits belong to a mesh; the others share one Job.
+TEST(Render, SeveralMeshesGiveThePicturesThatEachGives) {
+  const Scene scene = make_scene(MeshKind::torus);
+  const std::vector<Mesh> meshes = {mesh_of(scene), make_plane()};
+  for (const char* technique : {"relief", "oracle"}) {
+    MapSet maps = map_set(hills());
+    const RenderRequest request = request_of("prism", technique);
+    const auto together = render(backend("vulkan"), registry(), scene, std::span(meshes), maps, request);
+    ASSERT_TRUE(together) << format(together.error());
+    ASSERT_EQ(together->size(), 2U);
+    for (std::size_t k = 0; k < 2; ++k)
+      EXPECT_EQ((*together)[k].color, render_on("vulkan", scene, meshes[k], hills(), request).color) << technique << k;
+    EXPECT_NE((*together)[0].color, (*together)[1].color) << technique;
+  }
+}
+
 TEST(Render, CountCracksCatchesOnePixel) {
   const Scene scene = make_scene(MeshKind::sphere, 96);
   const Pixels good = render_on("vulkan", scene, mesh_of(scene), hills(), request_of("prism", "relief")).color;

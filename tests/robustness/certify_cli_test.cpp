@@ -49,6 +49,17 @@ TEST_F(CertifyCli, ABakedMapKeepsItsPromiseInEveryFormat) {
   }
 }
 
+/// The buffers and textures of the largest Job: the height map, the pyramid, and one small block a level.
+TEST_F(CertifyCli, BakingSaysWhatItTakesOnTheDevice) {
+  const ChildResult result =
+      run_relievo({"bake", "max_pyramid", "--height", path("height.pfm"), "-o", path("p.exr"), "--json"});
+  const auto json = nlohmann::json::parse(result.out, nullptr, false);
+  const int pyramid = 4 * (16 * 8 + 8 * 4 + 4 * 2 + 2 * 1 + 1);
+  EXPECT_EQ(json.value("bytes", 0), pyramid) << result.out << result.err;
+  EXPECT_EQ(json.value("peak_device_bytes", 0), pyramid + 4 * 12 * 7 + 5 * 48) << result.out;
+  EXPECT_GT(json.value("peak_process_bytes", 0), pyramid) << result.out;
+}
+
 TEST_F(CertifyCli, WithoutAFileTheMapIsBakedFirst) {
   for (const char* backend : {"vulkan", "opengl"}) {
     const ChildResult result = certify({"--backend", backend, "--set", "bits=8", "--address", "clip"});

@@ -56,6 +56,16 @@ Draw draw() {
   return result;
 }
 
+TEST(Job, ResourceBytesAreThoseOfAllBuffersAndLevels) {
+  Job job;
+  job.buffers = {{"a", 10, {}}, {"b", 3, bytes(3)}};
+  job.textures = {texture("t", Format::rg8_unorm, 4, 2), texture("u", Format::r32_float, 1, 1)};
+  job.textures[0].levels = 3;
+  EXPECT_EQ(resource_bytes(job), 10U + 3U + 2 * (8 + 2 + 1) + 4);
+  job.textures[1].depth = 5;
+  EXPECT_EQ(resource_bytes(job), 10U + 3U + 2 * (8 + 2 + 1) + 20);
+}
+
 /// A valid job that uses every field.
 Job sample_job() {
   Job job;

@@ -1,6 +1,7 @@
 /// Backends turn a Job into results; each is one folder of backends/.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <set>
 #include <string>
@@ -23,6 +24,7 @@ struct BackendInfo {
   /// Names of the shader-model features of descriptors ("compute", "geometry", "explicit_lod", "texture_3d", "gather",
   /// "vertex_texture") and of abilities ("timestamps", "linear_float32", "validation").
   std::set<std::string> features;
+  std::size_t max_storage_buffer = 0;  ///< bytes that a shader can reach in one; 0: no limit is known
 };
 
 struct BackendOptions {

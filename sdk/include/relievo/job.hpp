@@ -172,6 +172,9 @@ Status validate_job(const Job& job);
 /// Bytes of one level of a texture.
 std::size_t level_size(const Texture& texture, int level);
 
+/// Bytes of the job's buffers and textures: what it takes on a device, besides copies on the way there and back.
+std::size_t resource_bytes(const Job& job);
+
 /// A self-contained binary form (CBOR with a schema version), for a backend in another process. `parse_job` rejects
 /// anything that is not a valid job; id "job.parse".
 std::vector<std::uint8_t> serialize_job(const Job& job);

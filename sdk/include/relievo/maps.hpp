@@ -63,8 +63,9 @@ Result<std::vector<std::string>> required_maps(const Registry& registry, std::st
 
 /// Bakes `map` and whatever it needs first into `maps`, which holds "height"; maps that are there already stay.
 /// `values` are keyed "map.parameter"; those of other owners are ignored.
-/// Errors: "describe.unknown-map", "compose.*", "compile.*", "backend.*"; "maps.non-finite" if the result is not
-/// finite.
+/// A map whose texels are more than a storage buffer of the backend holds is baked into several.
+/// Errors: "describe.unknown-map", "compose.*", "compile.*", "backend.*"; "maps.too-large" for more than eight of
+/// these; "maps.non-finite" if the result is not finite.
 Status bake_map(Backend& backend, const Registry& registry, std::string_view map, MapSet& maps,
                 const std::map<std::string, double>& values = {}, std::vector<std::string>* messages = nullptr);
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,8 +41,18 @@ Result<std::vector<std::byte>> scene_block(const Scene& scene);
 Result<Job> make_render_job(const Registry& registry, const Scene& scene, const Mesh& mesh, const MapSet& maps,
                             const RenderRequest& request, std::string_view shader_target);
 
-/// Bakes what is missing in `maps`, makes the job and runs it.
+/// The same for several meshes in place of the scene's, each in a picture of its own: command and read-back k are those
+/// of mesh k. They share the program and the maps.
+Result<Job> make_render_job(const Registry& registry, const Scene& scene, std::span<const Mesh> meshes,
+                            const MapSet& maps, const RenderRequest& request, std::string_view shader_target);
+
+/// Bakes what is missing in `maps`, makes the job and runs it. With several meshes: a result for each, of one Job (but
+/// the oracle's, whose hits are those of a mesh, of one each).
 Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
                             MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages = nullptr);
+
+Result<std::vector<RenderResult>> render(Backend& backend, const Registry& registry, const Scene& scene,
+                                         std::span<const Mesh> meshes, MapSet& maps, const RenderRequest& request,
+                                         std::vector<std::string>* messages = nullptr);
 
 }  // namespace relievo

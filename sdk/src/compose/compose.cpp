@@ -124,7 +124,7 @@ Result<ComposedProgram> compose_parts(const Registry& registry, const Permutatio
 }
 
 Result<ComposedProgram> compose_bake(const Registry& registry, std::string_view map_name, AddressMode address,
-                                     const std::map<std::string, double>& values) {
+                                     const std::map<std::string, double>& values, int buffers) {
   Result<const MapDescriptor*> map = registry.map(map_name);
   if (!map) return tl::unexpected(map.error());
   if ((*map)->module.empty()) {
@@ -149,7 +149,8 @@ Result<ComposedProgram> compose_bake(const Registry& registry, std::string_view 
     program.maps.push_back({input->name, input->sampler, input->set, input->binding});
 
   SourceExpander expander(registry.sources);
-  std::string text = axis_macros(HeightFilter::exact, address, false, Aov::color) + declare_parameters(*slots);
+  std::string text = axis_macros(HeightFilter::exact, address, false, Aov::color) +
+                     fmt::format("#define RELIEVO_BAKE_BUFFERS {}\n", buffers) + declare_parameters(*slots);
   Result<std::string> maps = declare_maps(inputs, expander);
   if (!maps) return tl::unexpected(maps.error());
   Result<std::string> module = expander.expand((*map)->module);

@@ -86,15 +86,17 @@ void read_rounding(TomlReader& reader, MapDescriptor& map) {
 }
 
 void read_map(TomlReader& reader, MapDescriptor& map) {
-  reader.allow_keys({"schema",  "name",      "title",  "source",           "summary", "inputs",     "channels",
-                     "levels",  "dimension", "layers", "layers_parameter", "passes",  "rounding",   "sampler",
-                     "binding", "module",    "access", "features",         "loops",   "parameters", "axes"});
+  reader.allow_keys({"schema",       "name",     "title",      "source",  "summary",          "inputs",
+                     "channels",     "levels",   "dimension",  "layers",  "layers_parameter", "passes",
+                     "layers_apart", "rounding", "sampler",    "binding", "module",           "access",
+                     "features",     "loops",    "parameters", "axes"});
   map.inputs = reader.names("inputs");
   map.channels = reader.integer("channels", 1, 4);
   map.levels = reader.choice_of<MapLevels>("levels", level_names, MapLevels::single);
   read_layers(reader, map);
   read_rounding(reader, map);
   if (reader.has("passes")) map.passes = reader.integer("passes", 1, max_layers);
+  map.layers_apart = reader.choices("layers_apart", {"repeat", "mirror", "clamp", "clip"}, "describe.range");
   map.sampler = read_sampler(reader);
   read_binding(reader, map);
   map.module = reader.path_or_empty("module");

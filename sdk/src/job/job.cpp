@@ -50,6 +50,15 @@ int bytes_per_texel(Format format) {
   return traits(format).channels * traits(format).bytes_per_channel;
 }
 
+std::size_t resource_bytes(const Job& job) {
+  std::size_t bytes = 0;
+  for (const Buffer& buffer : job.buffers) bytes += buffer.size;
+  for (const Texture& texture : job.textures) {
+    for (int level = 0; level < texture.levels; ++level) bytes += level_size(texture, level);
+  }
+  return bytes;
+}
+
 std::size_t level_size(const Texture& texture, int level) {
   const auto extent = [level](int size) { return static_cast<std::size_t>(std::max(1, size >> level)); };
   return extent(texture.width) * extent(texture.height) * extent(texture.depth) *

@@ -110,8 +110,8 @@ Result<std::vector<std::byte>> scene_block(const Scene& scene) {
   return std::vector<std::byte>(bytes, bytes + sizeof(block));
 }
 
-Result<Job> make_render_job(const Registry& registry, const Scene& scene, const Mesh& mesh, const MapSet& maps,
-                            const RenderRequest& request, std::string_view shader_target) {
+Result<Job> make_render_job(const Registry& registry, const Scene& scene, std::span<const Mesh> meshes,
+                            const MapSet& maps, const RenderRequest& request, std::string_view shader_target) {
   Result<const StageDescriptor*> stage = registry.stage(request.stage);
   if (!stage) return tl::unexpected(stage.error());
   if ((*stage)->mesh == "none") {
@@ -134,23 +134,32 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, const 
 
   Job job;
   job.name = "render " + prepared->composed.key;
-  int tessellation =
-      (*stage)->mesh == "tessellated" ? tessellation_of(prepared->composed, scene, mesh.triangles.size()) : 1;
-  Draw draw = make_draw(**stage, make_mesh_buffers(mesh, scene.displacement.units, tessellation), job);
-  bind_maps(prepared->composed, maps, job, draw.resources);
-  bind_parameters(prepared->composed, job, draw.resources);
+  std::vector<ResourceBinding> resources;
+  bind_maps(prepared->composed, maps, job, resources);
+  bind_parameters(prepared->composed, job, resources);
   Result<std::vector<std::byte>> block = scene_block(scene);
   if (!block) return tl::unexpected(block.error());
-  bind_buffer(0, scene_binding, make_buffer("Scene", block->data(), block->size()), job, draw.resources);
-  keep_contract(prepared->program, draw.resources);
-  int color =
-      add_target(job, "color", request.aov == Aov::color ? Format::rgba8_unorm : Format::rgba32_float, scene.image);
-  draw.color_targets = {color};
-  draw.depth_target = add_target(job, "depth", Format::d32_float, scene.image);
+  bind_buffer(0, scene_binding, make_buffer("Scene", block->data(), block->size()), job, resources);
+  keep_contract(prepared->program, resources);
+  for (const Mesh& mesh : meshes) {
+    int tessellation =
+        (*stage)->mesh == "tessellated" ? tessellation_of(prepared->composed, scene, mesh.triangles.size()) : 1;
+    Draw draw = make_draw(**stage, make_mesh_buffers(mesh, scene.displacement.units, tessellation), job);
+    draw.resources = resources;
+    int color =
+        add_target(job, "color", request.aov == Aov::color ? Format::rgba8_unorm : Format::rgba32_float, scene.image);
+    draw.color_targets = {color};
+    draw.depth_target = add_target(job, "depth", Format::d32_float, scene.image);
+    job.commands.emplace_back(std::move(draw));
+    job.read_backs.push_back({ReadBack::Source::texture, color, 0});
+  }
   job.programs.push_back(std::move(prepared->program));
-  job.commands.emplace_back(std::move(draw));
-  job.read_backs.push_back({ReadBack::Source::texture, color, 0});
   return job;
+}
+
+Result<Job> make_render_job(const Registry& registry, const Scene& scene, const Mesh& mesh, const MapSet& maps,
+                            const RenderRequest& request, std::string_view shader_target) {
+  return make_render_job(registry, scene, std::span<const Mesh>(&mesh, 1), maps, request, shader_target);
 }
 
 namespace {
@@ -168,32 +177,47 @@ Image to_image(const std::vector<std::byte>& bytes, const SceneImage& size, Aov 
   return image;
 }
 
-}  // namespace
+RenderResult result_of(const Mesh& mesh, const std::vector<std::byte>& pixels, const SceneImage& size, Aov aov) {
+  RenderResult rendered;
+  rendered.image = to_image(pixels, size, aov);
+  if (aov == Aov::color) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(pixels.data());
+    rendered.color.assign(bytes, bytes + pixels.size());
+  }
+  for (const TriangleFrame& frame : triangle_frames(mesh)) rendered.degenerate_triangles += frame.degenerate;
+  return rendered;
+}
 
-namespace {
-
-Result<RenderResult> render_once(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
-                                 MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
+Result<std::vector<RenderResult>> render_meshes(Backend& backend, const Registry& registry, const Scene& scene,
+                                                std::span<const Mesh> meshes, MapSet& maps,
+                                                const RenderRequest& request, std::vector<std::string>* messages) {
   Result<std::vector<std::string>> needed = required_maps(registry, request.stage, request.technique);
   if (!needed) return tl::unexpected(needed.error());
   for (const std::string& map : *needed) {
     if (Status status = bake_map(backend, registry, map, maps, request.values, messages); !status)
       return tl::unexpected(status.error());
   }
-  Result<Job> job = make_render_job(registry, scene, mesh, maps, request, backend.info().shader_target);
+  Result<Job> job = make_render_job(registry, scene, meshes, maps, request, backend.info().shader_target);
   if (!job) return tl::unexpected(job.error());
   Result<JobResult> result = backend.execute(*job);
   if (!result) return tl::unexpected(result.error());
   append_messages(*result, messages);
-  RenderResult rendered;
-  rendered.image = to_image(result->read_backs.at(0), scene.image, request.aov);
-  if (request.aov == Aov::color) {
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(result->read_backs[0].data());
-    rendered.color.assign(bytes, bytes + result->read_backs[0].size());
+  std::vector<RenderResult> rendered;
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    rendered.push_back(result_of(meshes[k], result->read_backs.at(k), scene.image, request.aov));
+    if (!result->command_seconds.empty()) rendered.back().seconds = result->command_seconds[k];
   }
-  if (!result->command_seconds.empty()) rendered.seconds = result->command_seconds.front();
-  for (const TriangleFrame& frame : triangle_frames(mesh)) rendered.degenerate_triangles += frame.degenerate;
   return rendered;
+}
+
+Result<RenderResult> only(Result<std::vector<RenderResult>> rendered) {
+  if (!rendered) return tl::unexpected(rendered.error());
+  return std::move(rendered->front());
+}
+
+Result<RenderResult> render_once(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
+                                 MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
+  return only(render_meshes(backend, registry, scene, {&mesh, 1}, maps, request, messages));
 }
 
 /// The rays of the pixels come from the stage itself, written as pictures.
@@ -233,11 +257,23 @@ Result<RenderResult> render_oracle(Backend& backend, const Registry& registry, c
 
 }  // namespace
 
+Result<std::vector<RenderResult>> render(Backend& backend, const Registry& registry, const Scene& scene,
+                                         std::span<const Mesh> meshes, MapSet& maps, const RenderRequest& request,
+                                         std::vector<std::string>* messages) {
+  const bool replay = request.technique == "oracle" && !maps.contains("oracle_hits");
+  if (!replay) return render_meshes(backend, registry, scene, meshes, maps, request, messages);
+  std::vector<RenderResult> rendered;
+  for (const Mesh& mesh : meshes) {
+    Result<RenderResult> one = render_oracle(backend, registry, scene, mesh, maps, request, messages);
+    if (!one) return tl::unexpected(one.error());
+    rendered.push_back(std::move(*one));
+  }
+  return rendered;
+}
+
 Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
                             MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
-  bool replay = request.technique == "oracle" && !maps.contains("oracle_hits");
-  return replay ? render_oracle(backend, registry, scene, mesh, maps, request, messages)
-                : render_once(backend, registry, scene, mesh, maps, request, messages);
+  return only(render(backend, registry, scene, std::span<const Mesh>(&mesh, 1), maps, request, messages));
 }
 
 }  // namespace relievo

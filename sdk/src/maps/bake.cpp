@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "job/program.hpp"
+#include "maps/bake_plan.hpp"
 #include "relievo/maps.hpp"
 
 namespace relievo {
@@ -16,10 +17,10 @@ namespace {
 struct BakeBlock {
   std::array<std::int32_t, 4> size;    // width, height, channels, level
   std::array<std::int32_t, 4> source;  // of the level below: width, height, offset; offset of this level, in texels
-  std::array<std::int32_t, 4> layers;  // how many, pass
+  std::array<std::int32_t, 4> layers;  // how many, pass, floats in a buffer, the first of the dispatch
 };
 
-constexpr int bake_block_binding = 1, bake_texels_binding = 2;
+constexpr int bake_block_binding = 1, bake_texels_binding = 2;  // and those after it
 constexpr std::uint32_t bake_group = 8;
 
 /// The values of the map's own parameters. A technique may have the map's name, and parameters of its own.
@@ -39,36 +40,83 @@ std::map<std::string, double> values_for_bake(const Registry& registry, const Ma
   return own;
 }
 
-BakeBlock bake_block(const MapData& output, int level, int pass) {
+/// Layers that one Job bakes.
+struct BakeSlab {
+  int first = 0, count = 1;
+};
+
+BakeBlock bake_block(const MapData& output, int level, int pass, const BakePlan& plan, const BakeSlab& slab) {
   MapLevel here = map_level(output, level), below = map_level(output, std::max(0, level - 1));
   return {{here.width, here.height, output.channels, level},
           {below.width, below.height, static_cast<std::int32_t>(below.offset), static_cast<std::int32_t>(here.offset)},
-          {output.depth, pass, 0, 0}};
+          {output.depth, pass, static_cast<std::int32_t>(plan.buffer_floats), slab.first}};
+}
+
+/// The buffers that the texels are written to, which are what comes back.
+void bind_texels(const BakePlan& plan, const BakeSlab& slab, Job& job, std::vector<ResourceBinding>& resources) {
+  for (std::size_t k = 0; k < plan.buffers(slab.count); ++k) {
+    Buffer texels{
+        k == 0 ? "MapTexels" : fmt::format("MapTexels{}", k), plan.in_buffer(k, slab.count) * sizeof(float), {}};
+    const int index = bind_buffer(0, bake_texels_binding + static_cast<int>(k), std::move(texels), job, resources);
+    job.read_backs.push_back({ReadBack::Source::buffer, index, 0});
+  }
 }
 
 /// One dispatch a level and pass: a command sees what earlier ones wrote.
 Job bake_job(const PreparedProgram& prepared, const MapDescriptor& descriptor, const MapSet& maps,
-             const MapData& output) {
+             const MapData& output, const BakePlan& plan, const BakeSlab& slab) {
   Job job;
   job.name = "bake " + descriptor.name;
   job.programs.push_back(prepared.program);
   std::vector<ResourceBinding> shared;
   bind_maps(prepared.composed, maps, job, shared);
   bind_parameters(prepared.composed, job, shared);
-  Buffer result{"MapTexels", texel_count(output) * static_cast<std::size_t>(output.channels) * sizeof(float), {}};
-  int index = bind_buffer(0, bake_texels_binding, std::move(result), job, shared);
+  bind_texels(plan, slab, job, shared);
   for (int k = 0; k < output.levels * descriptor.passes; ++k) {
     Dispatch dispatch;
     dispatch.resources = shared;
-    BakeBlock block = bake_block(output, k / descriptor.passes, k % descriptor.passes);
+    BakeBlock block = bake_block(output, k / descriptor.passes, k % descriptor.passes, plan, slab);
     bind_buffer(0, bake_block_binding, make_buffer("Bake", &block, sizeof(block)), job, dispatch.resources);
     keep_contract(prepared.program, dispatch.resources);
     auto groups = [](int extent) { return (static_cast<std::uint32_t>(extent) + bake_group - 1) / bake_group; };
-    dispatch.groups = {groups(block.size[0]), groups(block.size[1]), static_cast<std::uint32_t>(output.depth)};
+    dispatch.groups = {groups(block.size[0]), groups(block.size[1]), static_cast<std::uint32_t>(slab.count)};
     job.commands.emplace_back(std::move(dispatch));
   }
-  job.read_backs.push_back({ReadBack::Source::buffer, index, 0});
   return job;
+}
+
+/// Adds what came back. Each buffer is freed when it is copied: maps may be large.
+void append_texels(std::vector<std::vector<std::byte>> buffers, std::vector<float>& texels) {
+  for (std::vector<std::byte>& buffer : buffers) {
+    const std::size_t start = texels.size();
+    texels.resize(start + buffer.size() / sizeof(float));
+    std::memcpy(texels.data() + start, buffer.data(), buffer.size());
+    buffer = {};
+  }
+}
+
+Result<std::vector<float>> bake_texels(Backend& backend, const PreparedProgram& prepared,
+                                       const MapDescriptor& descriptor, const MapSet& maps, const MapData& output,
+                                       const BakePlan& plan, std::vector<std::string>* messages) {
+  std::vector<float> texels;
+  texels.reserve(static_cast<std::size_t>(output.depth) * plan.layer_floats);
+  for (int first = 0; first < output.depth; first += plan.layers) {
+    const BakeSlab slab{first, std::min(plan.layers, output.depth - first)};
+    Result<JobResult> result = backend.execute(bake_job(prepared, descriptor, maps, output, plan, slab));
+    if (!result) return tl::unexpected(result.error());
+    append_messages(*result, messages);
+    append_texels(std::move(result->read_backs), texels);
+  }
+  return texels;
+}
+
+Status check_finite(const MapData& map) {
+  const auto found =
+      std::find_if(map.texels.begin(), map.texels.end(), [](float value) { return !std::isfinite(value); });
+  if (found == map.texels.end()) return {};
+  return fail(ErrorCode::backend, "maps.non-finite",
+              fmt::format("map '{}' has the value {} at element {}; expected a finite number", map.name, *found,
+                          found - map.texels.begin()));
 }
 
 }  // namespace
@@ -84,25 +132,22 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
   }
   const MapData& height = maps.find("height")->second;
   const std::map<std::string, double> own = values_for_bake(registry, descriptor, values);
+  // Composing checks the values, of which the shape depends.
   Result<ComposedProgram> composed = compose_bake(registry, name, height.address, own);
+  if (!composed) return tl::unexpected(composed.error());
+  MapData output = map_shape(descriptor, height.width, height.height, height.address, own);
+  const int bits = std::exchange(output.bits, 32);
+  const Result<BakePlan> plan = plan_bake(output, descriptor, height, backend.info());
+  if (!plan) return tl::unexpected(plan.error());
+  const int buffers = static_cast<int>(plan->buffers(plan->layers));
+  if (buffers > 1) composed = compose_bake(registry, name, height.address, own, buffers);
   if (!composed) return tl::unexpected(composed.error());
   Result<PreparedProgram> prepared = prepare_composed(std::move(*composed), backend.info().shader_target);
   if (!prepared) return tl::unexpected(prepared.error());
-
-  MapData output = map_shape(descriptor, height.width, height.height, height.address, own);
-  const int bits = std::exchange(output.bits, 32);
-  Result<JobResult> result = backend.execute(bake_job(*prepared, descriptor, maps, output));
-  if (!result) return tl::unexpected(result.error());
-  append_messages(*result, messages);
-  const std::vector<std::byte>& bytes = result->read_backs.at(0);
-  output.texels.resize(bytes.size() / sizeof(float));
-  std::memcpy(output.texels.data(), bytes.data(), bytes.size());
-  for (std::size_t i = 0; i < output.texels.size(); ++i) {
-    if (std::isfinite(output.texels[i])) continue;
-    return fail(
-        ErrorCode::backend, "maps.non-finite",
-        fmt::format("map '{}' has the value {} at element {}; expected a finite number", name, output.texels[i], i));
-  }
+  Result<std::vector<float>> texels = bake_texels(backend, *prepared, descriptor, maps, output, *plan, messages);
+  if (!texels) return tl::unexpected(texels.error());
+  output.texels = std::move(*texels);
+  if (Status status = check_finite(output); !status) return status;
   if (Status status = quantise(output, bits, descriptor.rounding); !status) return status;
   maps[descriptor.name] = std::move(output);
   return {};

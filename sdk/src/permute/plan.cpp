@@ -19,7 +19,7 @@ class Planner {
         manifest_(manifest),
         axes_(std::move(axes)),
         builder_(registry, axes_),
-        pruner_(registry, manifest) {
+        pruner_(manifest) {
     plan_.targets = manifest.targets;
     for (const ResolvedAxis& axis : axes_) plan_.axes.push_back(axis.archive);
   }

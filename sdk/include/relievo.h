@@ -6,8 +6,8 @@
  * enumeration, and an index out of range are errors. Nothing throws. A lack of memory is a status of the functions on
  * archives; while descriptors are read and shaders compiled, libraries inside may end the program on it.
  *
- * Handles are made by one function and freed by another, which takes NULL. They are immutable, so that any number of
- * threads may read one at once; only freeing must wait for the others. What differs is said at the function.
+ * Handles are made by one function and freed by another, which takes NULL. All but reloaders are immutable, so that any
+ * number of threads may read one at once; only freeing must wait for the others. What differs is said at the function.
  *
  * Views (relievo_string, relievo_bytes) live as long as the handle that they come from. Names are UTF-8. */
 #ifndef RELIEVO_H
@@ -178,6 +178,8 @@ typedef struct relievo_program_desc {
 relievo_status relievo_program_compile(const relievo_registry* registry, const relievo_program_desc* desc,
                                        relievo_program** program, relievo_error* error);
 void relievo_program_free(relievo_program* program);
+/* Another handle of the same program, with views of its own; to be freed as well. Thread-safe. */
+relievo_status relievo_program_share(const relievo_program* program, relievo_program** another, relievo_error* error);
 
 /* "surface/view=relief/exact/repeat/color". Thread-safe. */
 relievo_status relievo_program_key(const relievo_program* program, relievo_string* key, relievo_error* error);
@@ -284,6 +286,70 @@ relievo_status relievo_summary_counts(const relievo_summary* summary, relievo_co
 /* The index-th error, the most frequent first, and how many permutations have it. Thread-safe. */
 relievo_status relievo_summary_error(const relievo_summary* summary, size_t index, relievo_error* folded, size_t* count,
                                      relievo_error* error);
+
+/* Hot reload: programs that follow their sources while an application runs (docs/hot-reload.md). */
+
+typedef struct relievo_reloader relievo_reloader;
+
+/* A program of one reloader: not 0, and never used again. */
+typedef uint64_t relievo_reload_id;
+
+/* Without an error: `program` is what `ids`, one of them, is from now on; when there is none, what was wrong with the
+ * folders is mended. With an error, at the author's file and line: `ids` stay what they were; when there are none, a
+ * descriptor or folder is wrong, and all stay what they were. Lives until the callback returns: relievo_program_share
+ * keeps the program. */
+typedef struct relievo_reload_event {
+  const relievo_reload_id* ids;
+  size_t id_count;
+  const relievo_program* program; /* or NULL */
+  const relievo_error* error;     /* or NULL */
+} relievo_reload_event;
+
+/* Called from the reloader's own thread, or by relievo_reloader_poll, one at a time. May call every function on the
+ * reloader but relievo_reloader_free. Must neither throw nor jump out. */
+typedef void (*relievo_reload_callback)(void* user, const relievo_reload_event* event);
+
+/* Zeros are the defaults. */
+typedef struct relievo_reload_desc {
+  const char* const* folders; /* of technique, map and stage folders, besides our own; NULL when `folder_count` is 0 */
+  size_t folder_count;
+  uint32_t interval_ms; /* between two looks of the reloader's own thread; 0: no thread, the application polls */
+  uint32_t settle_ms;   /* files must have stayed as they are for this long; 0 = 50 */
+  uint32_t threads;     /* for compiling several programs; 0 = all */
+  relievo_reload_callback callback; /* NULL: the application asks relievo_reloader_current */
+  void* user;
+} relievo_reload_desc;
+
+/* Reads the folders once, before it returns. Thread-safe, as is every function on a reloader but
+ * relievo_reloader_free. */
+relievo_status relievo_reloader_create(const relievo_reload_desc* desc, relievo_reloader** reloader,
+                                       relievo_error* error);
+/* Waits for a callback that is running; no other comes. Programs that it gave stay. Not thread-safe. */
+void relievo_reloader_free(relievo_reloader* reloader);
+
+/* Compiled at the next look, at once by a thread of its own: the callback gets it, or its error. `technique` stands for
+ * the roles that the stage has now. */
+relievo_status relievo_reloader_add(relievo_reloader* reloader, const relievo_program_desc* desc, relievo_reload_id* id,
+                                    relievo_error* error);
+/* Only a callback that is under way may still name the program. One that is not there is no error. */
+relievo_status relievo_reloader_remove(relievo_reloader* reloader, relievo_reload_id id, relievo_error* error);
+/* The program as it was last told, to be freed; NULL before, and for one that is not there. */
+relievo_status relievo_reloader_current(const relievo_reloader* reloader, relievo_reload_id id,
+                                        relievo_program** program, relievo_error* error);
+/* Looks once, and recompiles what has to be; `reloaded` is how many programs the callback was told to be new. Does
+ * nothing when called by the callback, or while another thread polls. */
+relievo_status relievo_reloader_poll(relievo_reloader* reloader, size_t* reloaded, relievo_error* error);
+
+/* What a reloader did since it began. */
+typedef struct relievo_reload_counts {
+  uint64_t looks;    /* at names, sizes and times */
+  uint64_t loads;    /* of all sources, since something looked different */
+  uint64_t composed; /* programs that a changed file may have reached */
+  uint64_t compiled; /* of them, those that came out different; with those that failed */
+} relievo_reload_counts;
+
+relievo_status relievo_reloader_counts(const relievo_reloader* reloader, relievo_reload_counts* counts,
+                                       relievo_error* error);
 
 /* Archives. */
 

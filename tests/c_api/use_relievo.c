@@ -1,5 +1,6 @@
 /* A C99 program that uses the SDK as an engine would: compiles a program, has a manifest compiled into an archive, reads
- * it, bakes a map. Arguments: a manifest, a folder to write into, a folder with a technique called `broken`. */
+ * it, edits a technique while a reloader watches it, bakes a map. Arguments: a manifest, one with errors, a folder to
+ * write into (with an empty folder techniques/edited), a folder with a technique called `broken`. */
 #include <relievo.h>
 
 #include <math.h>
@@ -7,24 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int failures = 0;
+#include "check.h"
 
-#define CHECK(condition)                                                         \
-  do {                                                                           \
-    if (!(condition)) {                                                          \
-      ++failures;                                                                \
-      fprintf(stderr, "%s:%d: %s does not hold\n", __FILE__, __LINE__, #condition); \
-    }                                                                            \
-  } while (0)
+int failures = 0;
 
 /* Says why a call failed that should not have. */
-static int succeeds(relievo_status status, const relievo_error* error, int line) {
+int succeeds(relievo_status status, const relievo_error* error, const char* file, int line) {
   if (status == RELIEVO_OK) return 1;
   ++failures;
-  fprintf(stderr, "%s:%d: [%s] %s (%s:%d)\n", __FILE__, line, error->id, error->message, error->file, (int)error->line);
+  fprintf(stderr, "%s:%d: [%s] %s (%s:%d)\n", file, line, error->id, error->message, error->file, (int)error->line);
   return 0;
 }
-#define OK(call) succeeds((call), &error, __LINE__)
 
 static void use_version(void) {
   const relievo_string version = relievo_version();
@@ -352,7 +346,7 @@ static void use_maps(const relievo_registry* registry) {
 int main(int argc, char** argv) {
   relievo_registry* registry = NULL;
   relievo_error error;
-  char archive[512], broken[512], cache[512];
+  char archive[512], broken[512], cache[512], edited[512];
   if (argc != 5) {
     fprintf(stderr, "usage: %s MANIFEST BROKEN_MANIFEST FOLDER BROKEN_FOLDER\n", argv[0]);
     return 2;
@@ -360,6 +354,7 @@ int main(int argc, char** argv) {
   snprintf(archive, sizeof archive, "%s/sample.rla", argv[3]);
   snprintf(broken, sizeof broken, "%s/broken.rla", argv[3]);
   snprintf(cache, sizeof cache, "%s/cache", argv[3]);
+  snprintf(edited, sizeof edited, "%s/techniques", argv[3]);
   use_version();
   if (OK(relievo_registry_load(NULL, 0, &registry, &error))) {
     use_registry(registry);
@@ -370,6 +365,8 @@ int main(int argc, char** argv) {
   use_broken_technique(argv[4]);
   if (use_manifest(argv[1], archive, cache)) use_archive(archive);
   use_failing_manifest(argv[2], broken);
+  use_reloader(edited);
+  use_reloading_thread();
   printf(failures == 0 ? "all as expected\n" : "%d failures\n", failures);
   return failures == 0 ? 0 : 1;
 }

@@ -7,6 +7,8 @@ seconds=${1:-60}
 shift || true
 jobs=${RELIEVO_JOBS:-2}
 build=build/fuzz
+# Every allocation is remembered by its innermost calls alone, and freed memory for less long: a third quicker.
+export ASAN_OPTIONS=malloc_context_size=4:quarantine_size_mb=32${ASAN_OPTIONS:+:$ASAN_OPTIONS}
 
 [ -f $build/build.ninja ] || cmake --preset fuzz >/dev/null
 ninja -C $build -j "$jobs" --quiet relievo_fuzz
@@ -26,7 +28,7 @@ for name in "${names[@]}"; do
   words=()
   [ -f "$dictionary" ] && words=(-dict="$dictionary")
   # The packaged compilers allocate for good; -timeout catches what hangs.
-  if $build/bin/fuzz_"$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 "${words[@]}" \
+  if $build/bin/fuzz_"$name" -max_total_time="$seconds" -runs="${RELIEVO_FUZZ_RUNS:--1}" -timeout=10 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 -entropic=0 "${words[@]}" \
       -artifact_prefix=$build/findings/"$name"- "$found" tests/fuzz/corpus/"$name" >"$log" 2>&1; then
     result=ok
   else

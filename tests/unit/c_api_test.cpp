@@ -34,6 +34,8 @@ struct Handles {
     relievo_manifest_permute(manifest, &permute, &summary, nullptr);
     write_archive(folder / "a.rla", test::sample_archive());
     relievo_archive_open((folder / "a.rla").c_str(), &archive, nullptr);
+    const relievo_reload_desc reload{};
+    relievo_reloader_create(&reload, &reloader, nullptr);
   }
   ~Handles() {
     relievo_registry_free(registry);
@@ -41,6 +43,7 @@ struct Handles {
     relievo_manifest_free(manifest);
     relievo_summary_free(summary);
     relievo_archive_free(archive);
+    relievo_reloader_free(reloader);
   }
   Handles(const Handles&) = delete;
   Handles& operator=(const Handles&) = delete;
@@ -51,6 +54,7 @@ struct Handles {
   relievo_manifest* manifest = nullptr;
   relievo_summary* summary = nullptr;
   relievo_archive* archive = nullptr;
+  relievo_reloader* reloader = nullptr;
 };
 
 /// A call of which the pointers whose bit is set in `nulls` are NULL.
@@ -67,11 +71,14 @@ T* unless(unsigned nulls, unsigned bit, T* pointer) {
 /// Where results go that nobody looks at.
 struct Results {
   relievo_registry* registry = nullptr;
-  relievo_program* program = nullptr;
+  relievo_program *program = nullptr, *shared = nullptr;
   relievo_manifest* manifest = nullptr;
   relievo_summary* summary = nullptr;
   relievo_archive* archive = nullptr;
   relievo_map* map = nullptr;
+  relievo_reloader* reloader = nullptr;
+  relievo_reload_id id = 0;
+  relievo_reload_counts reload_counts{};
   relievo_description description{};
   relievo_parameter parameter{};
   relievo_program_parameter slot{};
@@ -101,6 +108,7 @@ std::map<std::string, Call> calls(Handles& h, Results& r) {
   static const relievo_program_desc program_desc{};
   static const relievo_permute_desc permute_desc{};
   static const relievo_bake_desc bake_desc{};
+  static const relievo_reload_desc reload_desc{};
   return {
       RELIEVO_CALL(relievo_registry_load, 1, nullptr, 0, unless(n, 0, &r.registry)),
       RELIEVO_CALL(relievo_registry_count, 2, unless(n, 0, h.registry), RELIEVO_MAP, unless(n, 1, &r.count)),
@@ -111,6 +119,7 @@ std::map<std::string, Call> calls(Handles& h, Results& r) {
                    0, unless(n, 2, &r.parameter)),
       RELIEVO_CALL(relievo_program_compile, 3, unless(n, 0, h.registry), unless(n, 1, &program_desc),
                    unless(n, 2, &r.program)),
+      RELIEVO_CALL(relievo_program_share, 2, unless(n, 0, h.program), unless(n, 1, &r.shared)),
       RELIEVO_CALL(relievo_program_key, 2, unless(n, 0, h.program), unless(n, 1, &r.text)),
       RELIEVO_CALL(relievo_program_shader_count, 2, unless(n, 0, h.program), unless(n, 1, &r.count)),
       RELIEVO_CALL(relievo_program_shader_stage, 2, unless(n, 0, h.program), 0, unless(n, 1, &r.stage)),
@@ -131,6 +140,12 @@ std::map<std::string, Call> calls(Handles& h, Results& r) {
       RELIEVO_CALL(relievo_summary_counts, 2, unless(n, 0, h.summary), unless(n, 1, &r.counts)),
       RELIEVO_CALL(relievo_summary_error, 3, unless(n, 0, h.summary), 0, unless(n, 1, &r.folded),
                    unless(n, 2, &r.count)),
+      RELIEVO_CALL(relievo_reloader_create, 2, unless(n, 0, &reload_desc), unless(n, 1, &r.reloader)),
+      RELIEVO_CALL(relievo_reloader_add, 3, unless(n, 0, h.reloader), unless(n, 1, &program_desc), unless(n, 2, &r.id)),
+      RELIEVO_CALL(relievo_reloader_remove, 1, unless(n, 0, h.reloader), 7),
+      RELIEVO_CALL(relievo_reloader_current, 2, unless(n, 0, h.reloader), 7, unless(n, 1, &r.program)),
+      RELIEVO_CALL(relievo_reloader_poll, 2, unless(n, 0, h.reloader), unless(n, 1, &r.count)),
+      RELIEVO_CALL(relievo_reloader_counts, 2, unless(n, 0, h.reloader), unless(n, 1, &r.reload_counts)),
       RELIEVO_CALL(relievo_archive_open, 2, unless(n, 0, "none.rla"), unless(n, 1, &r.archive)),
       RELIEVO_CALL(relievo_archive_counts, 3, unless(n, 0, h.archive), unless(n, 1, &r.count), unless(n, 2, &r.count2)),
       RELIEVO_CALL(relievo_archive_axis_count, 2, unless(n, 0, h.archive), unless(n, 1, &r.count)),
@@ -166,7 +181,8 @@ std::vector<std::string> declared_functions() {
 
 TEST(CApi, EveryFunctionRefusesEveryNull) {
   Handles handles;
-  ASSERT_TRUE(handles.registry && handles.program && handles.manifest && handles.summary && handles.archive);
+  ASSERT_TRUE(handles.registry && handles.program && handles.manifest && handles.summary && handles.archive &&
+              handles.reloader);
   Results results;
   const std::map<std::string, Call> table = calls(handles, results);
   const std::vector<std::string> names = declared_functions();
@@ -199,6 +215,8 @@ TEST(CApi, TheSameCallsWithoutNullsAreNotRefused) {
   }
   EXPECT_GT(successes, 25);
   relievo_registry_free(results.registry);
+  relievo_program_free(results.shared);
+  relievo_reloader_free(results.reloader);
 }
 
 TEST(CApi, FreeingNullDoesNothing) {
@@ -208,6 +226,7 @@ TEST(CApi, FreeingNullDoesNothing) {
   relievo_summary_free(nullptr);
   relievo_archive_free(nullptr);
   relievo_map_free(nullptr);
+  relievo_reloader_free(nullptr);
 }
 
 class CApiPrograms : public ::testing::Test {

@@ -14,6 +14,7 @@
 #include "permute/hot_reload/reach.hpp"
 #include "permute/hot_reload/watch.hpp"
 #include "relievo/hot_reload.hpp"
+#include "support/edited_technique.hpp"
 #include "support/files.hpp"
 
 namespace relievo {
@@ -22,24 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
+using test::descriptor;
+using test::module;
+using test::part;
+
 constexpr Target kGlsl{Language::glsl, 450};
-
-std::string descriptor(const std::string& name, double bias = 0.25) {
-  return "schema = 1\nname = \"" + name + "\"\ntitle = \"A technique to edit\"\nsource = \"none\"\n" +
-         "summary = \"Moves by a bias.\"\nclass = \"non_iterative\"\nfirst_hit = \"never\"\nmodule = \"" + name +
-         ".glsl\"\nmaps = [\"height\"]\nfeatures = [\"explicit_lod\"]\n\n[parameters.bias]\ntitle = \"Bias\"\n" +
-         "unit = \"1\"\ntype = \"float\"\nmin = 0.0\nmax = 1.0\ndefault = " + std::to_string(bias) +
-         "\nbinding = \"uniform\"\n";
-}
-
-std::string module(const std::string& name) {
-  return "#include \"shaders/lib/interval.glsl\"\n#include \"part.glsl\"\n\nHit " + name + "_trace(Ray ray) {\n  " +
-         "return relievo_hit_at(ray, RELIEVO_HIT, " + name + "_part() + " + name + "_bias);\n}\n";
-}
-
-std::string part(const std::string& name, const std::string& value) {
-  return "float " + name + "_part() {\n  return " + value + ";\n}\n";
-}
 
 /// A folder with techniques to edit, a reloader without a thread, and what it told.
 class HotReload : public ::testing::Test {
@@ -442,6 +430,19 @@ TEST_F(HotReload, TheDestructorWaitsForWhatIsUnderWay) {
     std::this_thread::sleep_for(5ms);
     EXPECT_TRUE(take_events().empty()) << told;
   }
+}
+
+TEST_F(HotReload, TheRegistryIsThatOfTheLastReadingWithoutAnError) {
+  start();
+  const auto before = reloader_->registry();
+  edit("one/technique.toml", descriptor("one", 0.75));
+  reloaded();
+  const auto after = reloader_->registry();
+  EXPECT_EQ(before->techniques.at("one").parameters.at(0).value, 0.25);
+  EXPECT_EQ(after->techniques.at("one").parameters.at(0).value, 0.75);
+  edit("one/technique.toml", "broken");
+  reloader_->poll();
+  EXPECT_EQ(reloader_->registry(), after);
 }
 
 TEST_F(HotReload, FoldersThatCannotBeReadAtFirstAreAnError) {

@@ -1,4 +1,5 @@
 /// One file with the programs of many permutations for many targets, to be mapped into memory.
+/// Every free function here is thread-safe, as is every const function of an Archive.
 #pragma once
 
 #include <cstdint>
@@ -65,7 +66,7 @@ constexpr std::uint16_t kNoValue = 0xffff;
 /// Writes an archive. The file's bytes depend on the axes and on which permutation has which program, not on the order
 /// in which they were added; equal outputs lie in it once. Programs go to a spool file beside `path` while they are
 /// added, so memory does not grow with their size; `path` itself appears, whole, when `finish` succeeds.
-/// Thread-safe: `add_program` and `add_permutation`.
+/// Thread-safe: `create`, `add_program` and `add_permutation`; `finish` and moves are for when no other thread uses it.
 class ArchiveWriter {
  public:
   /// Errors: "archive.write" when the folder cannot be written; "archive.axes" for two axes or values of one name, an
@@ -102,8 +103,9 @@ struct ArchiveOutput {
   friend bool operator==(const ArchiveOutput&, const ArchiveOutput&) = default;
 };
 
-/// An archive that is mapped into memory. Everything is const and thread-safe; views live as long as the archive.
-/// The file must not be changed while it is mapped; writers here replace files and never change them.
+/// An archive that is mapped into memory. Opening and every const function is thread-safe; moving and destroying are
+/// not. Views live as long as the archive. The file must not be changed while it is mapped; writers here replace files
+/// and never change them.
 class Archive {
  public:
   /// Maps the file, and checks its header and index whole: whatever passes can be used without a crash.

@@ -1,4 +1,5 @@
 /// Backends turn a Job into results; each is one folder of backends/.
+/// Every free function here is thread-safe; a Backend is not.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +39,7 @@ struct BackendOptions {
 class Backend {
  public:
   virtual ~Backend() = default;
-  virtual const BackendInfo& info() const = 0;
+  virtual const BackendInfo& info() const = 0;  ///< thread-safe
   /// Runs the job to completion. Errors: "job.*" for a Job that is not valid, "backend.*" when the API refuses.
   /// Nothing of the job outlives the call.
   virtual Result<JobResult> execute(const Job& job) = 0;

@@ -1,4 +1,6 @@
 /// A content-addressed store of compiled programs, on disk and shared between machines.
+/// Every function here, and every function of a Cache but its destructor, is thread-safe, whatever other threads and
+/// processes do with the same folder.
 #pragma once
 
 #include <chrono>
@@ -36,7 +38,8 @@ struct CacheOptions {
   std::uint64_t max_bytes = std::uint64_t{1} << 31;  ///< beyond it the entries used longest ago go; at least 1 MiB
   std::string remote;                                ///< "redis://host[:port][/database]", or empty
   std::chrono::milliseconds remote_timeout{200};     ///< for connecting, and for every answer
-  std::function<void(std::string_view)> log;         ///< one sentence an event: a broken entry, an unreachable remote
+  /// One sentence an event: a broken entry, an unreachable remote. Called from any thread, one at a time.
+  std::function<void(std::string_view)> log;
 };
 
 /// $RELIEVO_CACHE_DIR, else $XDG_CACHE_HOME/relievo, else ~/.cache/relievo; empty when none of them is set.

@@ -1,4 +1,5 @@
 /// Certifying: what a map promises, checked texel by texel on the CPU, in double, against the bilinear surface.
+/// Every function here is thread-safe.
 #pragma once
 
 #include <cstdint>

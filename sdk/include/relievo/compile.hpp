@@ -1,4 +1,5 @@
 /// Vulkan GLSL → SPIR-V → every target, in process.
+/// Every function here is thread-safe: calls from several threads are independent, each with compilers of its own.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
 /// Module + stage → one GLSL source a shader.
+/// Every function and member function here is thread-safe.
 #pragma once
 
 #include <map>

@@ -1,5 +1,6 @@
 /// Descriptors: what techniques, maps and stages say of themselves, and the registry that finds them by scanning.
 /// The schema of the three files is in docs/descriptors.md.
+/// Every function and member function here is thread-safe; many threads may read one registry.
 #pragma once
 
 #include <filesystem>

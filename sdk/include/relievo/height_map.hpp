@@ -1,4 +1,5 @@
 /// The surface that everything here is about: a height map read as a bilinear patchwork.
+/// Every function here is thread-safe.
 #pragma once
 
 #include <cstdint>

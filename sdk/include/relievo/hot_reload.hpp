@@ -60,7 +60,8 @@ struct HotReloadCounts {
 
 /// Watches folders by looking at names, sizes and modification times, and compares contents when these differ: a file
 /// that is only touched does nothing. Editors that write by renaming, or truncate and write, are waited for.
-/// Thread-safe. The callback comes from the reloader's own thread, or from `poll`, one at a time.
+/// Every function but the destructor is thread-safe. The callback comes from the reloader's own thread, or from `poll`,
+/// one at a time.
 class HotReloader {
  public:
   /// Reads the folders once, before it returns. Errors: those of `load_registry`.
@@ -80,6 +81,8 @@ class HotReloader {
   /// nothing when called by the callback, or while another thread polls.
   std::size_t poll();
 
+  /// What the folders held when they were last read without an error. Never null.
+  std::shared_ptr<const Registry> registry() const;
   HotReloadCounts counts() const;
 
  private:

@@ -1,4 +1,5 @@
 /// Images in and out. Every write is atomic: a temporary file in the same folder is renamed once it is complete.
+/// Every function here is thread-safe; of several writes to one path the last to end stays, whole.
 #pragma once
 
 #include <cstdint>

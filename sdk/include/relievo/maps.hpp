@@ -1,4 +1,6 @@
 /// Baking: what techniques read besides the height map is computed by compute modules on any backend that has compute.
+/// Every function here is thread-safe; `quantise` changes its map, `bake_map` its maps and messages, with a backend
+/// that no other thread uses meanwhile.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
 /// Error figures of design.md §5: a technique's hits against the oracle's.
+/// Every function here is thread-safe.
 #pragma once
 
 #include <cstdint>

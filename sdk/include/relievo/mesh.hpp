@@ -1,4 +1,5 @@
 /// Triangle meshes: what a height map is wrapped around.
+/// Every function here is thread-safe; those that take a `Mesh&` change that mesh.
 #pragma once
 
 #include <array>

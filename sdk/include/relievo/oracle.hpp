@@ -47,6 +47,7 @@ struct OracleOptions {
 /// First hit of one ray. The surface exists where H ≤ h(u,v): t is the smallest t ≥ 0 with H(t) ≤ h(u(t),v(t)), closed.
 /// Non-finite or zero-length rays are `miss` at t = 0. With `clip`, entering the domain below the surface is a hit at
 /// the entry. A ray that starts with H < h strictly is `inside`; H = h is a hit at t = 0.
+/// Every const function is thread-safe, as is `to_string`.
 class Oracle {
  public:
   /// Keeps a reference-free copy of what it needs; O(W·H) set-up.

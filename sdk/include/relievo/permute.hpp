@@ -1,4 +1,6 @@
 /// Many permutations at once: axes, pruning, compiling each different program once, archives (docs/permutations.md).
+/// Every function and const member function here is thread-safe; runs of `permute` may share a cache, but two must not
+/// write one archive at once.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,6 @@
 /// Pictures of a scene: a mesh, a technique and a drawing stage as a Job.
+/// Every function here is thread-safe; `render` changes its maps and messages, with a backend that no other thread uses
+/// meanwhile.
 #pragma once
 
 #include <cstddef>

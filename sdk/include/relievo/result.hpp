@@ -1,4 +1,9 @@
 /// Errors as values: what a user can cause comes back as `Result<T>`; only broken contracts of our own assert.
+///
+/// Threads. "Thread-safe" at a function means that any number of threads may call it at once, also with the same
+/// arguments where it does not change them; what it changes or moves from is the caller's to keep others from. Of a
+/// plain struct the same holds: any number may read one that nobody writes. No function keeps anything of a call but
+/// `use_program_cache`; no function may be called by a signal handler. Every function of this header is thread-safe.
 #pragma once
 
 #include <string>

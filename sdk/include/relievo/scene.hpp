@@ -1,5 +1,6 @@
 /// What a picture is made of: a mesh, its height map, camera, lights and material. The file format is in
 /// docs/scenes.md.
+/// Every function here is thread-safe.
 #pragma once
 
 #include <array>

@@ -1,4 +1,6 @@
 /// Rays in, hits out, on a backend: the `ray` stage as a Job.
+/// Every function here is thread-safe; `trace` changes its maps and messages, with a backend that no other thread uses
+/// meanwhile.
 #pragma once
 
 #include <span>

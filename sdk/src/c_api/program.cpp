@@ -5,14 +5,9 @@
 
 #include "c_api/boundary.hpp"
 #include "c_api/permutation.hpp"
+#include "c_api/program.hpp"
 #include "c_api/registry.hpp"
 #include "describe/origins.hpp"
-
-struct relievo_program {
-  relievo::ComposedProgram composed;
-  relievo::CompiledProgram compiled;
-  std::vector<std::byte> block;
-};
 
 namespace relievo::c_api {
 
@@ -28,19 +23,13 @@ Result<std::unique_ptr<relievo_program>> compile_program(const Registry& registr
   if (!permutation) return tl::unexpected(permutation.error());
   const Result<std::vector<Target>> targets = targets_of(desc);
   if (!targets) return tl::unexpected(targets.error());
-  auto program = std::make_unique<relievo_program>();
   Result<ComposedProgram> composed = compose(registry, *permutation);
   if (!composed) return tl::unexpected(composed.error());
-  program->composed = *std::move(composed);
-  CompileOptions options;
-  options.optimize = desc.skip_optimizer == 0;
-  options.threads = std::max(1u, desc.threads);
   const std::string& fallback = (*registry.stage(desc.stage))->fallback;
-  Result<CompiledProgram> compiled = compile(program->composed, *targets, options, fallback);
+  Result<CompiledProgram> compiled = compile(*composed, *targets, compile_options_of(desc), fallback);
   if (!compiled) return tl::unexpected(compiled.error());
-  program->compiled = *std::move(compiled);
-  program->block = parameter_block(program->composed);
-  return program;
+  HotProgramState state{*std::move(composed), *std::move(compiled)};
+  return std::make_unique<relievo_program>(std::make_shared<const HotProgramState>(std::move(state)));
 }
 
 /// Checks what every function on a program's list does: `get` answers with an element for an index in range.
@@ -105,6 +94,13 @@ relievo_program_parameter describe(const ParameterSlot& slot) {
 
 }  // namespace
 
+CompileOptions compile_options_of(const relievo_program_desc& desc) {
+  CompileOptions options;
+  options.optimize = desc.skip_optimizer == 0;
+  options.threads = std::max(1u, desc.threads);
+  return options;
+}
+
 }  // namespace relievo::c_api
 
 using namespace relievo;
@@ -125,18 +121,22 @@ void relievo_program_free(relievo_program* program) {
   delete program;
 }
 
+relievo_status relievo_program_share(const relievo_program* program, relievo_program** another, relievo_error* error) {
+  return value(program, another, error, [&] { return new relievo_program(*program); });
+}
+
 relievo_status relievo_program_key(const relievo_program* program, relievo_string* key, relievo_error* error) {
-  return value(program, key, error, [&] { return view(program->compiled.key); });
+  return value(program, key, error, [&] { return view(program->state->compiled.key); });
 }
 
 relievo_status relievo_program_shader_count(const relievo_program* program, size_t* count, relievo_error* error) {
-  return value(program, count, error, [&] { return program->compiled.shaders.size(); });
+  return value(program, count, error, [&] { return program->state->compiled.shaders.size(); });
 }
 
 relievo_status relievo_program_shader_stage(const relievo_program* program, size_t index, relievo_shader_stage* stage,
                                             relievo_error* error) {
-  return element(program, stage, index, program ? program->compiled.shaders.size() : 0, error,
-                 [&] { *stage = static_cast<relievo_shader_stage>(program->compiled.shaders[index].stage); });
+  return element(program, stage, index, program ? program->state->compiled.shaders.size() : 0, error,
+                 [&] { *stage = static_cast<relievo_shader_stage>(program->state->compiled.shaders[index].stage); });
 }
 
 relievo_status relievo_program_output(const relievo_program* program, relievo_shader_stage stage, const char* target,
@@ -144,7 +144,7 @@ relievo_status relievo_program_output(const relievo_program* program, relievo_sh
   return at_boundary(error, [&]() -> Status {
     if (Status status = require({{"program", program}, {"target", target}, {"output", output}}); !status) return status;
     if (Status status = require_enum("stage", stage, RELIEVO_COMPUTE + 1); !status) return status;
-    const Result<relievo_bytes> found = output_of(program->compiled, stage, target);
+    const Result<relievo_bytes> found = output_of(program->state->compiled, stage, target);
     if (!found) return tl::unexpected(found.error());
     *output = *found;
     return {};
@@ -152,23 +152,23 @@ relievo_status relievo_program_output(const relievo_program* program, relievo_sh
 }
 
 relievo_status relievo_program_binding_count(const relievo_program* program, size_t* count, relievo_error* error) {
-  return value(program, count, error, [&] { return program->compiled.bindings.size(); });
+  return value(program, count, error, [&] { return program->state->compiled.bindings.size(); });
 }
 
 relievo_status relievo_program_binding(const relievo_program* program, size_t index, relievo_binding* binding,
                                        relievo_error* error) {
-  return element(program, binding, index, program ? program->compiled.bindings.size() : 0, error,
-                 [&] { *binding = describe(program->compiled.bindings[index], program->composed); });
+  return element(program, binding, index, program ? program->state->compiled.bindings.size() : 0, error,
+                 [&] { *binding = describe(program->state->compiled.bindings[index], program->state->composed); });
 }
 
 relievo_status relievo_program_parameter_count(const relievo_program* program, size_t* count, relievo_error* error) {
-  return value(program, count, error, [&] { return program->composed.parameters.size(); });
+  return value(program, count, error, [&] { return program->state->composed.parameters.size(); });
 }
 
 relievo_status relievo_program_parameter_at(const relievo_program* program, size_t index,
                                             relievo_program_parameter* parameter, relievo_error* error) {
-  return element(program, parameter, index, program ? program->composed.parameters.size() : 0, error,
-                 [&] { *parameter = describe(program->composed.parameters[index]); });
+  return element(program, parameter, index, program ? program->state->composed.parameters.size() : 0, error,
+                 [&] { *parameter = describe(program->state->composed.parameters[index]); });
 }
 
 relievo_status relievo_program_parameter_block(const relievo_program* program, relievo_bytes* block,
@@ -177,5 +177,5 @@ relievo_status relievo_program_parameter_block(const relievo_program* program, r
 }
 
 relievo_status relievo_program_reflection(const relievo_program* program, relievo_string* json, relievo_error* error) {
-  return value(program, json, error, [&] { return view(program->compiled.reflection); });
+  return value(program, json, error, [&] { return view(program->state->compiled.reflection); });
 }

@@ -9,10 +9,6 @@ namespace {
 constexpr int max_dots = 15;
 constexpr int max_brackets = 16;
 
-bool is_outside_ascii(char c) {
-  return static_cast<unsigned char>(c) >= 0x80;
-}
-
 /// Lexes as TOML does, as far as strings, comments and brackets go. Where the text is not TOML it may go astray, but
 /// toml++ stops there.
 class TomlGuard {
@@ -20,7 +16,6 @@ class TomlGuard {
   TomlGuard(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
   Status run() {
-    if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // byte order mark
     while (status_ && at_ < text_.size()) {
       const char c = text_[at_];
       if (c == '"' || c == '\'') {
@@ -38,29 +33,21 @@ class TomlGuard {
  private:
   /// One character outside strings and comments.
   void check(char c) {
-    if (is_outside_ascii(c)) report("a character outside ASCII stands outside strings and comments");
     if (c == '\n' || c == '=' || c == ',' || c == '[' || c == '{') dots_ = 0;
     if (c == '.' && ++dots_ > max_dots) report("a dotted key has more than 16 parts; at most 16 are allowed");
     if (c == ']' || c == '}') brackets_ = std::max(0, brackets_ - 1);
     if ((c == '[' || c == '{') && ++brackets_ > max_brackets) report("brackets nest more than 16 deep");
   }
 
-  /// Whether a string can begin here. toml++ reads a quote right behind a value's characters as one of them.
-  bool opens_string() const {
-    constexpr std::string_view openers = " \t\r\n=,[{";
-    return at_ == 0 || openers.find(text_[at_ - 1]) != openers.npos || text_.substr(0, at_) == "\xEF\xBB\xBF";
-  }
-
   /// A basic or literal string, of one or of many lines.
   void skip_string() {
     const char mark = text_[at_];
-    const bool is_string = opens_string();
     const std::string three(3, mark);
     const bool is_long = text_.substr(at_, 3) == three;
     at_ += is_long ? 3 : 1;
-    while (status_ && at_ < text_.size()) {
+    while (at_ < text_.size()) {
       if (mark == '"' && text_[at_] == '\\') {
-        skip_escape();
+        at_ += 2;
       } else if (is_long && text_.substr(at_, 3) == three) {
         at_ += 3;
         while (at_ < text_.size() && text_[at_] == mark) ++at_;  // up to two marks may end the content
@@ -69,21 +56,9 @@ class TomlGuard {
         ++at_;
         return;
       } else {
-        if (!is_string && is_outside_ascii(text_[at_])) {
-          report("a character outside ASCII stands in quotes that follow another character; put a space before them");
-        }
         ++at_;
       }
     }
-  }
-
-  void skip_escape() {
-    const std::size_t next = text_.find_first_not_of(" \t\r\n\v\f", at_ + 1);
-    if (next != text_.npos && is_outside_ascii(text_[next])) {
-      at_ = next;
-      report("a character outside ASCII follows a backslash; join the lines instead");
-    }
-    at_ += 2;
   }
 
   void report(const char* message) {

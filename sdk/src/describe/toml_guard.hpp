@@ -1,7 +1,5 @@
-/// A look at a TOML text before it is parsed, for what toml++ 3.3 does not survive:
-/// - it recurses once a level and bounds neither dotted keys nor its destructor, so that `a.a.a.…` overflows the stack;
-/// - its test for whitespace is undefined for most characters outside ASCII. Outside strings and comments TOML has
-///   none, unless quotes follow a value's characters; inside, the test is made after a backslash.
+/// A look at a TOML text before it is parsed, for what toml++ 3.3 does not survive: it recurses once a level and bounds
+/// neither dotted keys nor its destructor, so that `a.a.a.…` overflows the stack.
 #pragma once
 
 #include <string>
@@ -11,9 +9,7 @@
 
 namespace relievo {
 
-/// Errors: "describe.syntax" where a dotted key has more than 16 parts, brackets nest more than 16 deep, a character
-/// outside ASCII stands outside strings and comments, or in quotes right behind another character (`1"\u00a7`), or
-/// follows a backslash and whitespace.
+/// Errors: "describe.syntax" where a dotted key has more than 16 parts or brackets nest more than 16 deep.
 Status guard_toml(std::string_view text, const std::string& file);
 
 }  // namespace relievo

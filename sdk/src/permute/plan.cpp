@@ -15,11 +15,7 @@ constexpr double most_permutations = 1e7;
 class Planner {
  public:
   Planner(const Registry& registry, const Manifest& manifest, std::vector<ResolvedAxis> axes)
-      : registry_(registry),
-        manifest_(manifest),
-        axes_(std::move(axes)),
-        builder_(registry, axes_),
-        pruner_(registry, manifest) {
+      : registry_(registry), manifest_(manifest), axes_(std::move(axes)), builder_(registry, axes_), pruner_(manifest) {
     plan_.targets = manifest.targets;
     for (const ResolvedAxis& axis : axes_) plan_.axes.push_back(axis.archive);
   }

@@ -14,7 +14,7 @@ namespace relievo {
 /// Answers for one manifest; remembers what the capability table said.
 class Pruner {
  public:
-  Pruner(const Registry& registry, const Manifest& manifest) : registry_(registry), manifest_(manifest) {}
+  explicit Pruner(const Manifest& manifest) : manifest_(manifest) {}
 
   /// One sentence a target of the manifest; empty: kept.
   std::vector<std::string> reasons(const Parts& parts, const Permutation& permutation);
@@ -24,7 +24,6 @@ class Pruner {
   std::string rule_reason(const Parts& parts, const Facts& facts) const;
   const std::string& capability_reason(const Parts& parts, const Target& target);
 
-  const Registry& registry_;
   const Manifest& manifest_;
   std::map<std::string, std::string> capabilities_;  // by stage, features and target
 };

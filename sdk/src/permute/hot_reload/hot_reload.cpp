@@ -31,7 +31,7 @@ class HotReloader::State {
   Status read_first() {
     Result<Registry> registry = load_registry(options_.folders);
     if (!registry) return tl::unexpected(registry.error());
-    registry_ = *std::move(registry);
+    registry_ = std::make_shared<const Registry>(*std::move(registry));
     return {};
   }
 
@@ -57,6 +57,11 @@ class HotReloader::State {
     const std::scoped_lock lock(mutex_);
     const auto found = programs_.find(id);
     return found == programs_.end() ? nullptr : found->second.state;
+  }
+
+  std::shared_ptr<const Registry> registry() const {
+    const std::scoped_lock lock(mutex_);
+    return registry_;
   }
 
   HotReloadCounts counts() const {
@@ -90,7 +95,7 @@ class HotReloader::State {
     SourceChanges changes;
     if (watch_.has_settled_change(FolderWatch::Clock::now())) changes = load();
     std::vector<Recompilation> work = collect(changes);
-    recompile(registry_, work, options_.threads);
+    recompile(*registry_, work, options_.threads);
     return tell(work);
   }
 
@@ -107,8 +112,12 @@ class HotReloader::State {
       call({{}, nullptr, loaded.error()});
       return {};
     }
-    SourceChanges changes = changes_between(registry_.sources, loaded->sources);
-    registry_ = *std::move(loaded);
+    SourceChanges changes = changes_between(registry_->sources, loaded->sources);
+    auto registry = std::make_shared<const Registry>(*std::move(loaded));
+    {
+      const std::scoped_lock lock(mutex_);
+      registry_.swap(registry);
+    }
     if (registry_error_) {
       registry_error_.reset();
       call({});
@@ -165,7 +174,6 @@ class HotReloader::State {
 
   // Of whoever polls.
   FolderWatch watch_;
-  Registry registry_;
   std::optional<Error> registry_error_;
 
   mutable std::mutex mutex_;
@@ -174,6 +182,7 @@ class HotReloader::State {
   HotProgramId last_id_ = 0;
   std::map<HotProgramId, WatchedProgram> programs_;
   HotReloadCounts counts_;
+  std::shared_ptr<const Registry> registry_;  ///< replaced by whoever polls alone, who reads it without the lock
 
   std::thread thread_;
 };
@@ -202,6 +211,10 @@ std::shared_ptr<const HotProgramState> HotReloader::current(HotProgramId id) con
 
 std::size_t HotReloader::poll() {
   return state_->poll();
+}
+
+std::shared_ptr<const Registry> HotReloader::registry() const {
+  return state_->registry();
 }
 
 HotReloadCounts HotReloader::counts() const {

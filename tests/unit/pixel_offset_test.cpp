@@ -86,6 +86,13 @@ TEST(PixelOffsets, CountHiddenFeaturesFromTheEdgeThatHidesThem) {
   EXPECT_LT(offsets.pixels.max, 9);
 }
 
+TEST(PixelOffsets, AreSmallAtOutlinesThatHardlyMoved) {
+  View nudged = [](double x, double y) { return turned(x - 1e-3, y - 1e-3); };
+  PixelOffsets offsets = pixel_offsets(picture(turned), picture(nudged));
+  EXPECT_EQ(offsets.lost, 0u) << "the first row and column lie outside all triangles";
+  EXPECT_LT(offsets.pixels.max, 2e-2);
+}
+
 TEST(PixelOffsets, GoRoundTheTexture) {
   View tiled = [](double x, double y) { return Surface{0.9 + 0.004 * x, 0.99 + 0.004 * y}; };
   View wrapped = [&](double x, double y) {

@@ -83,6 +83,9 @@ struct PixelOffsets {
 /// while the hits say it for every pixel. Why not Δ(u,v) times a derivative: the derivative of the relief's picture has
 /// no value at occlusions, and the base surface's says nothing of slopes; searching the reference needs neither.
 ///
+/// At outlines, where no three pixels are around a point, what a pixel shows nearly (half a pixel by the step to its
+/// neighbours) counts as shown there.
+///
 /// (u,v) count modulo 1. A step from pixel to pixel of more than a quarter of the texture is a seam, and shows nothing.
 /// Errors of the caller: sizes that differ or other than 4 channels are asserted.
 PixelOffsets pixel_offsets(const Image& reference, const Image& measured);

@@ -19,6 +19,7 @@ using glm::dvec2;
 using glm::ivec2;
 
 constexpr double seam = 0.25;           // of the texture, between neighbouring pixels
+constexpr double own_pixel = 0.5;       // a pixel shows its surface as far as this around, pixels
 constexpr double on_the_border = 1e-6;  // of a triangle: neighbours share their borders in spite of rounding
 
 bool shows_surface(const Image& image, std::size_t pixel) {
@@ -57,8 +58,27 @@ double longest(const dvec2& v) {
 struct Feature {
   ivec2 pixel;
   dvec2 surface;  // modulo 1
-  double offset = std::numeric_limits<double>::infinity();
+  double offset;  // infinite: not found yet
 };
+
+/// How far a point that `pixel` shows nearly lies from it, by the smallest step of (u,v) to a neighbour; infinite
+/// beyond the pixel itself. At outlines there is nothing else to go by: no three pixels are around the point.
+double offset_within_pixel(const Image& reference, const ivec2& pixel, const dvec2& surface) {
+  auto index = [&](const ivec2& p) {
+    return static_cast<std::size_t>(p.y) * static_cast<std::size_t>(reference.width) + static_cast<std::size_t>(p.x);
+  };
+  const double none = std::numeric_limits<double>::infinity();
+  dvec2 here = surface_at(reference, index(pixel));
+  double smallest = none;
+  for (const ivec2& way : {ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1)}) {
+    ivec2 next = pixel + way;
+    if (next.x < 0 || next.y < 0 || next.x >= reference.width || next.y >= reference.height) continue;
+    if (shows_surface(reference, index(next)))
+      smallest = std::min(smallest, longest(step(here, surface_at(reference, index(next)))));
+  }
+  double offset = longest(step(here, surface)) / smallest;
+  return smallest < none && offset <= own_pixel ? offset : none;
+}
 
 /// Features by where they are on the texture: size² square cells, each a range of `features`.
 class FeatureGrid {
@@ -149,8 +169,8 @@ PixelOffsets pixel_offsets(const Image& reference, const Image& measured) {
       offsets.push_back(0);
       continue;
     }
-    int pixel = static_cast<int>(i);
-    moved.push_back({{pixel % measured.width, pixel / measured.width}, in_tile(surface)});
+    ivec2 pixel(static_cast<int>(i) % measured.width, static_cast<int>(i) / measured.width);
+    moved.push_back({pixel, in_tile(surface), offset_within_pixel(reference, pixel, surface)});
   }
   FeatureGrid grid(grid_size(reference), moved);
   for (int y = 0; y + 1 < reference.height; ++y) {

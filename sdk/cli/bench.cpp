@@ -16,7 +16,7 @@ struct BenchOptions {
   std::vector<std::string> techniques, set;
   std::string height, address = "repeat", rays, backend = "vulkan", filter = "exact";
   double scale = 0.1, angle = 20;
-  int repeat = 5;
+  int ray_image = 1024, repeat = 5;
   bool embree = false;
   unsigned embree_threads = 2;
 };
@@ -106,7 +106,7 @@ Status run_bench(const Context& context, const BenchOptions& options) {
   if (!timing) return tl::unexpected(timing.error());
   Result<HeightMap> height = load_height(options.height, options.address);
   if (!height) return tl::unexpected(height.error());
-  std::vector<Ray> rays = make_view_rays(options.angle, options.scale);
+  std::vector<Ray> rays = make_view_rays(options.angle, options.scale, options.ray_image, options.ray_image);
   if (!options.rays.empty()) {
     Result<std::vector<Ray>> given = read_rays(options.rays);
     if (!given) return tl::unexpected(given.error());
@@ -157,6 +157,10 @@ void add_bench(CLI::App& app, Context& context) {
   CLI::Option* rays = command->add_option("--rays", options->rays, "rays.csv");
   command->add_option("--angle", options->angle, "Degrees above the base plane")
       ->check(CLI::Range(0.01, 90.0))
+      ->excludes(rays)
+      ->capture_default_str();
+  command->add_option("--ray-image", options->ray_image, "Rays a side of the ray image")
+      ->check(CLI::Range(1, 8192))
       ->excludes(rays)
       ->capture_default_str();
   command->add_option("--backend", options->backend)->capture_default_str();

@@ -6,6 +6,7 @@
 #include "evaluation/evaluation.hpp"
 #include "report/heat.hpp"
 #include "report/page.hpp"
+#include "report/picture_table.hpp"
 #include "report/synthetic.hpp"
 
 namespace relievo::cli {
@@ -129,6 +130,7 @@ Status write_files(const Report& report, const nlohmann::json& json, const std::
   if (!page) return tl::unexpected(page.error());
   if (Status status = write_text(folder / "report.json", json.dump() + "\n"); !status) return status;
   if (Status status = write_text(folder / "report.csv", sweep_csv(report.sweep)); !status) return status;
+  if (Status status = write_text(folder / "pictures.csv", pictures_csv(report.evaluation)); !status) return status;
   return write_text(folder / "index.html", *page);
 }
 
@@ -242,7 +244,9 @@ void add_report(CLI::App& app, Context& context) {
       ->take_last()
       ->capture_default_str();
   command->add_option("--set", options->set, "technique.parameter=value");
-  command->add_option("-o,--output", options->output, "Folder for index.html, report.json, report.csv and pictures/")
+  command
+      ->add_option("-o,--output", options->output,
+                   "Folder for index.html, report.json, report.csv, pictures.csv and pictures/")
       ->required();
   command->add_flag("--quick,!--full", options->quick, "Fewer counts, angles and rays, no height maps made by rule")
       ->take_last();

@@ -11,7 +11,7 @@ struct Case {
   Case() {
     static const Registry loaded = *load_registry();
     input.registry = &loaded;
-    input.techniques = {"relief"};
+    input.techniques = {"relief", "exact"};
     LoadedScene sphere;
     sphere.scene.mesh.kind = MeshKind::sphere;
     input.scenes.emplace_back("ball", sphere);
@@ -21,9 +21,12 @@ struct Case {
     evaluation.backends = {opengl, vulkan};
     evaluation.rays.emplace_back();
     evaluation.ray_agreements.push_back({"map", "relief", 20, 1000000, 100});
-    evaluation.pictures.push_back({"ball", "prism", "relief", "vulkan", "", "", 0, true, 0});
-    evaluation.picture_agreements.push_back({"ball", "prism", "relief", "opengl", "vulkan", {}});
-    evaluation.picture_agreements.push_back({"ball", "prism", "relief", "vulkan", "vertex", {}});
+    evaluation.pictures.push_back({"ball", "prism", "relief", "vulkan", "", "", "", 0, true, 0});
+    evaluation.picture_agreements.push_back({"ball", "prism", "relief", "opengl", "vulkan", {}, -1, {}});
+    evaluation.picture_agreements.push_back({"ball", "prism", "relief", "vulkan", "vertex", {}, -1, {}});
+    PixelOffsets offsets;
+    offsets.pixels.p99 = 0.01;
+    evaluation.picture_agreements.push_back({"ball", "prism", "exact", "vulkan", "oracle", {}, 0, offsets});
     evaluation.cracks.push_back({"ball", "relief", "vulkan", 1, 0});
   }
 
@@ -46,13 +49,22 @@ using Names = std::vector<std::string>;
 TEST(Judge, PassesRowsThatKeepEveryClaim) {
   Case good;
   EXPECT_EQ(good.failures(), Names());
-  EXPECT_GE(good.evaluation.checks.size(), 7U) << "a claim is not judged at all";
+  EXPECT_GE(good.evaluation.checks.size(), 8U) << "a claim is not judged at all";
 }
 
 TEST(Judge, FailsRaysThatDifferBetweenBackends) {
   Case bad;
   bad.evaluation.ray_agreements[0].equal_percent = 99.98;
   EXPECT_EQ(bad.failures(), Names({"rays equal between backends"}));
+}
+
+TEST(Judge, FailsFeaturesThatMovedWhereFirstHitsAreCertain) {
+  Case bad;
+  bad.evaluation.picture_agreements[2].offsets->pixels.p99 = 0.11;
+  EXPECT_EQ(bad.failures(), Names({"pixel offset against the oracle's picture where first hits are certain, p99"}));
+  bad.evaluation.checks.clear();
+  bad.evaluation.picture_agreements[2].technique = "relief";
+  EXPECT_EQ(bad.failures(), Names()) << "relief mapping claims no such thing";
 }
 
 TEST(Judge, FailsPicturesThatDifferBetweenBackends) {

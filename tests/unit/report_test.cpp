@@ -10,6 +10,7 @@
 
 #include "cli/report/heat.hpp"
 #include "cli/report/html.hpp"
+#include "cli/report/picture_table.hpp"
 #include "cli/report/plot.hpp"
 #include "cli/report/synthetic.hpp"
 #include "cli/report/thumbnail.hpp"
@@ -257,6 +258,46 @@ TEST(ReportThumbnail, IsTheMeanOfWhatItStandsForOverTheBackground) {
   ASSERT_EQ(small.width, 2);
   ASSERT_EQ(small.height, 1);
   EXPECT_EQ(small.pixels, (std::vector<float>{1, 0, 0.5, 0.25, 0.25, 0.25}));
+}
+
+/// A prism drawn on two backends that agree, and the oracle's picture of it.
+Evaluation pictures_of_two_backends() {
+  Evaluation evaluation;
+  for (const char* name : {"opengl", "vulkan"}) {
+    BackendInfo backend;
+    backend.name = name;
+    evaluation.backends.push_back(backend);
+  }
+  PixelOffsets offsets;
+  offsets.judged = 1000;
+  offsets.lost = 5;
+  offsets.pixels = {0.25, 1.5, 9};
+  ImageDifference difference;
+  difference.psnr = 33.25;
+  difference.mask_iou = 0.9875;
+  evaluation.picture_agreements = {
+      {"ball, \"red\"", "prism", "relief", "opengl", "oracle", difference, 0.0625, offsets},
+      {"ball, \"red\"", "prism", "relief", "vulkan", "oracle", difference, 0.0626, {}},
+      {"ball, \"red\"", "prism", "relief", "opengl", "vulkan", {}, -1, {}}};
+  return evaluation;
+}
+
+TEST(PictureTable, HasOneRowForBackendsThatAgree) {
+  Evaluation evaluation = pictures_of_two_backends();
+  std::string html = picture_table(evaluation, "ball, \"red\"");
+  for (const char* figure : {"33.2", "0.0625", "0.25", "1.50", "9.00", "0.50", "0.9875"})
+    EXPECT_NE(html.find(figure), std::string::npos) << figure;
+  EXPECT_EQ(html.find("0.0626"), std::string::npos) << "the other backend's picture is the same";
+  evaluation.picture_agreements[2].difference.within_percent = 99;
+  EXPECT_NE(picture_table(evaluation, "ball, \"red\"").find("0.0626"), std::string::npos);
+  EXPECT_EQ(picture_table(evaluation, "another scene"), "");
+}
+
+TEST(PictureTable, IsACsvFileOfAllBackends) {
+  EXPECT_EQ(pictures_csv(pictures_of_two_backends()),
+            "scene,stage,technique,backend,psnr,flip,offset_p50,offset_p99,offset_max,lost_percent,mask_iou\n"
+            "\"ball, \"\"red\"\"\",prism,relief,opengl,33.25,0.0625,0.25,1.5,9,0.5,0.9875\n"
+            "\"ball, \"\"red\"\"\",prism,relief,vulkan,33.25,0.0626,,,,,0.9875\n");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -88,6 +89,7 @@ struct PictureRow {
   std::string scene, stage, technique, backend;  ///< technique empty: the stage traces nothing
   std::string file;                              ///< PNG, relative to the pictures' folder; empty when none was written
   std::string difference_file;                   ///< against the oracle's picture; empty when there is none
+  std::string flip_file;                         ///< the same as a map of FLIP
   double seconds = -1;
   bool repeatable = true;  ///< all runs byte-identical
   std::uint64_t degenerate_triangles = 0;
@@ -98,6 +100,9 @@ struct PictureRow {
 struct PictureAgreement {
   std::string scene, stage, technique, left, right;
   ImageDifference difference;
+  double flip = -1;  ///< mean, against the oracle's only; −1: not measured
+  std::optional<PixelOffsets>
+      offsets;  ///< against the oracle's only, on the first backend: the hits are the same on all
 };
 
 /// Cracks of the prism stage under a random vertex order.

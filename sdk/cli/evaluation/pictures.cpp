@@ -4,6 +4,7 @@
 #include <span>
 
 #include "evaluation/evaluation.hpp"
+#include "evaluation/ramp.hpp"
 #include "relievo/image.hpp"
 
 namespace relievo::cli {
@@ -20,10 +21,11 @@ struct SceneRun {
   Backend& backend;
   MapSet& maps;
   Evaluation& evaluation;
+  bool first_backend;
 };
 
-Result<RenderResult> draw(SceneRun& run, const std::string& stage, const std::string& technique) {
-  RenderRequest request{stage, technique, HeightFilter::exact, Aov::color, run.input.values};
+Result<RenderResult> draw(SceneRun& run, const std::string& stage, const std::string& technique, Aov aov = Aov::color) {
+  RenderRequest request{stage, technique, HeightFilter::exact, aov, run.input.values};
   return render(run.backend, *run.input.registry, run.parts.scene, run.parts.mesh, run.maps, request,
                 &run.evaluation.messages);
 }
@@ -49,13 +51,30 @@ Pixels amplify_difference(const Pixels& a, const Pixels& b) {
   return result;
 }
 
+Status write_flip(const SceneRun& run, const std::string& file, const std::vector<float>& map) {
+  Pixels pixels;
+  for (float value : map) {
+    RampColor color = ramp(value);
+    pixels.insert(pixels.end(), color.begin(), color.end());
+    pixels.push_back(255);
+  }
+  return write_picture(run, file, pixels);
+}
+
 /// Draws `repeats` times, writes the picture and its row.
 Result<Pixels> run_picture(SceneRun& run, const std::string& stage, const std::string& technique) {
   Result<RenderResult> first = draw(run, stage, technique);
   if (!first) return tl::unexpected(first.error());
-  PictureRow row{run.scene_name,          stage, technique,
-                 run.backend.info().name, "",    "",
-                 first->seconds,          true,  first->degenerate_triangles};
+  PictureRow row{run.scene_name,
+                 stage,
+                 technique,
+                 run.backend.info().name,
+                 "",
+                 "",
+                 "",
+                 first->seconds,
+                 true,
+                 first->degenerate_triangles};
   for (int i = 1; i < run.input.repeats; ++i) {
     Result<RenderResult> again = draw(run, stage, technique);
     if (!again) return tl::unexpected(again.error());
@@ -73,13 +92,27 @@ Result<Pixels> run_picture(SceneRun& run, const std::string& stage, const std::s
 struct Reference {
   std::string name;
   Pixels pixels;
+  std::optional<Image> surface;  ///< the surface point that each pixel shows
 };
 
 Status compare_with(SceneRun& run, const Reference& reference, const std::string& stage, const std::string& technique,
                     const Pixels& pixels) {
-  run.evaluation.picture_agreements.push_back({run.scene_name, stage, technique, run.backend.info().name,
-                                               reference.name, compare_images(pixels, reference.pixels)});
+  const SceneImage& size = run.parts.scene.image;
+  FlipDifference flipped = flip(pixels, reference.pixels, size.width, size.height);
+  PictureAgreement agreement{run.scene_name, stage,
+                             technique,      run.backend.info().name,
+                             reference.name, compare_images(pixels, reference.pixels),
+                             flipped.mean,   std::nullopt};
+  if (reference.surface) {
+    Result<RenderResult> surface = draw(run, stage, technique, Aov::uv);
+    if (!surface) return tl::unexpected(surface.error());
+    agreement.offsets = pixel_offsets(*reference.surface, surface->image);
+  }
+  run.evaluation.picture_agreements.push_back(std::move(agreement));
   if (run.input.pictures.empty()) return {};
+  std::string flip_file = file_name(run, stage, technique, "-flip");
+  run.evaluation.pictures.back().flip_file = flip_file;
+  if (Status status = write_flip(run, flip_file, flipped.map); !status) return status;
   std::string file = file_name(run, stage, technique, "-difference");
   run.evaluation.pictures.back().difference_file = file;
   return write_picture(run, file, amplify_difference(pixels, reference.pixels));
@@ -99,13 +132,19 @@ Result<std::optional<Reference>> reference_for(SceneRun& run, const StageDescrip
   Result<RenderResult> result = draw(run, drawn_by, "oracle");
   if (!result) return tl::unexpected(result.error());
   if (is_replayed(stage)) {
-    PictureRow row{run.scene_name, stage.name, "oracle", run.backend.info().name, "", "", result->seconds, true, 0};
+    PictureRow row{run.scene_name, stage.name, "oracle", run.backend.info().name, "", "", "", result->seconds, true, 0};
     if (!run.input.pictures.empty()) row.file = file_name(run, stage.name, "oracle");
     run.evaluation.pictures.push_back(std::move(row));
     if (Status status = write_picture(run, file_name(run, stage.name, "oracle"), result->color); !status)
       return tl::unexpected(status.error());
   }
-  return Reference{"oracle", std::move(result->color)};
+  Reference reference{"oracle", std::move(result->color), std::nullopt};
+  if (run.first_backend) {
+    Result<RenderResult> surface = draw(run, drawn_by, "oracle", Aov::uv);
+    if (!surface) return tl::unexpected(surface.error());
+    reference.surface = std::move(surface->image);
+  }
+  return reference;
 }
 
 using PicturesByCase = std::map<std::pair<std::string, std::string>, Pixels>;  // stage, technique
@@ -140,7 +179,7 @@ void compare_silhouettes(const std::string& scene, const std::string& backend, c
   for (const auto& [key, pixels] : pictures) {
     if (key.first != "prism") continue;
     evaluation.picture_agreements.push_back(
-        {scene, key.first, key.second, backend, "vertex", compare_images(pixels, displaced->second)});
+        {scene, key.first, key.second, backend, "vertex", compare_images(pixels, displaced->second), -1, {}});
   }
 }
 
@@ -153,7 +192,7 @@ void compare_backends(const std::string& scene, const std::map<std::string, Pict
       auto match = other->second.find(key);
       if (match == other->second.end()) continue;
       evaluation.picture_agreements.push_back(
-          {scene, key.first, key.second, left, other->first, compare_images(pixels, match->second)});
+          {scene, key.first, key.second, left, other->first, compare_images(pixels, match->second), -1, {}});
     }
   }
 }
@@ -165,7 +204,8 @@ Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, E
   for (const auto& [name, parts] : input.scenes) {
     std::map<std::string, PicturesByCase> by_backend;
     for (auto& [backend_name, backend] : backends) {
-      SceneRun run{input, name, parts, *backend, input.baked->of(parts.height, backend_name), evaluation};
+      MapSet& maps = input.baked->of(parts.height, backend_name);
+      SceneRun run{input, name, parts, *backend, maps, evaluation, backend_name == backends.begin()->first};
       for (const auto& [stage_name, stage] : input.registry->stages) {
         if (stage.mesh == "none") continue;
         progress.advance(fmt::format("pictures {} {} {}", name, stage_name, backend_name));
@@ -209,7 +249,7 @@ Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Eva
     for (auto& [backend_name, backend] : backends) {
       if (!backend->info().features.contains("geometry")) continue;
       progress.advance(fmt::format("cracks {} {}", name, backend_name));
-      SceneRun run{input, name, parts, *backend, input.baked->of(parts.height, backend_name), evaluation};
+      SceneRun run{input, name, parts, *backend, input.baked->of(parts.height, backend_name), evaluation, false};
       Result<RenderResult> reference = draw(run, "vertex", "");
       if (!reference) return tl::unexpected(reference.error());
       for (const std::string& technique : input.techniques) {

@@ -12,6 +12,20 @@ nlohmann::json difference_json(const ImageDifference& d) {
   return json;
 }
 
+nlohmann::json agreement_json(const PictureAgreement& p) {
+  nlohmann::json json = {{"scene", p.scene}, {"stage", p.stage}, {"technique", p.technique},
+                         {"left", p.left},   {"right", p.right}, {"difference", difference_json(p.difference)}};
+  if (p.flip >= 0) json["flip"] = p.flip;
+  if (p.offsets) {
+    json["pixel_offset"] = {{"judged", p.offsets->judged},
+                            {"lost", p.offsets->lost},
+                            {"p50", p.offsets->pixels.p50},
+                            {"p99", p.offsets->pixels.p99},
+                            {"max", p.offsets->pixels.max}};
+  }
+  return json;
+}
+
 template <class Rows, class Convert>
 nlohmann::json list(const Rows& rows, Convert convert) {
   nlohmann::json json = nlohmann::json::array();
@@ -58,14 +72,12 @@ nlohmann::json to_json(const Evaluation& e) {
                 {"backend", p.backend},
                 {"file", p.file},
                 {"difference_file", p.difference_file},
+                {"flip_file", p.flip_file},
                 {"seconds", p.seconds},
                 {"repeatable", p.repeatable},
                 {"degenerate_triangles", p.degenerate_triangles}};
   });
-  result["picture_agreements"] = list(e.picture_agreements, [](const PictureAgreement& p) {
-    return json{{"scene", p.scene}, {"stage", p.stage}, {"technique", p.technique},
-                {"left", p.left},   {"right", p.right}, {"difference", difference_json(p.difference)}};
-  });
+  result["picture_agreements"] = list(e.picture_agreements, agreement_json);
   result["cracks"] = list(e.cracks, [](const CrackRow& c) {
     return json{
         {"scene", c.scene}, {"technique", c.technique}, {"backend", c.backend}, {"seed", c.seed}, {"cracks", c.cracks}};

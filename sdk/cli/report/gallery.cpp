@@ -6,6 +6,7 @@
 
 #include "report/html.hpp"
 #include "report/page.hpp"
+#include "report/picture_table.hpp"
 #include "report/thumbnail.hpp"
 
 namespace relievo::cli {
@@ -148,7 +149,7 @@ Result<std::string> stage_html(const Report& report, const Stage& stage) {
 Result<std::string> gallery_section(const Report& report) {
   std::string html;
   for (const std::string& scene : scenes_of(report.evaluation)) {
-    html += fmt::format("<section><h2>Pictures: {}</h2>\n", escape(scene));
+    html += fmt::format("<section><h2>Pictures: {}</h2>\n{}", escape(scene), picture_table(report.evaluation, scene));
     for (const Stage& stage : stages_of(report.evaluation, scene)) {
       Result<std::string> part = stage_html(report, stage);
       if (!part) return part;

@@ -5,30 +5,18 @@
 #include <array>
 #include <cmath>
 
+#include "evaluation/ramp.hpp"
 #include "relievo/image.hpp"
 
 namespace relievo::cli {
 
 namespace {
 
-using Color = std::array<std::uint8_t, 3>;
+using Color = RampColor;
 
 constexpr int gap = 4;
 constexpr float least_texels = 1e-4f;
 constexpr Color grey = {150, 150, 150}, red = {214, 40, 40}, white = {255, 255, 255};
-
-/// Dark violet, blue, green, yellow: brighter all the way, so that it reads in grey as well.
-Color ramp(float value) {
-  constexpr std::array<Color, 5> anchors = {
-      {{40, 10, 70}, {58, 82, 139}, {32, 144, 140}, {94, 201, 97}, {253, 231, 37}}};
-  float at = std::clamp(value, 0.0f, 1.0f) * (anchors.size() - 1);
-  std::size_t below = std::min<std::size_t>(static_cast<std::size_t>(at), anchors.size() - 2);
-  Color color{};
-  for (std::size_t c = 0; c < color.size(); ++c)
-    color[c] = static_cast<std::uint8_t>(
-        std::lround(std::lerp(float(anchors[below][c]), float(anchors[below + 1][c]), at - static_cast<float>(below))));
-  return color;
-}
 
 Color steps_color(float steps, float most) {
   if (std::isnan(steps)) return grey;

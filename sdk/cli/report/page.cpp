@@ -123,8 +123,8 @@ Result<std::string> make_page(const Report& report) {
           costs_section(report) + rays_section(report) + *gallery;
   html += time_html(report);
   html += fmt::format(
-      "<p class=\"soft\">Relievo {}. The figures are in report.json and report.csv beside this "
-      "page.</p>\n</body>\n</html>\n",
+      "<p class=\"soft\">Relievo {}. The figures are in report.json, report.csv and pictures.csv "
+      "beside this page.</p>\n</body>\n</html>\n",
       escape(RELIEVO_VERSION));
   return html;
 }

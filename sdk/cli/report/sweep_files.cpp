@@ -1,6 +1,7 @@
 /// The sweep as JSON and CSV.
 #include <fmt/format.h>
 
+#include "report/csv.hpp"
 #include "report/sweep.hpp"
 
 namespace relievo::cli {
@@ -21,13 +22,6 @@ nlohmann::json row_json(const SweepRow& row) {
   if (row.seconds >= 0) json.update({{"seconds", row.seconds}, {"spread", row.spread}});
   if (row.ratio >= 0) json["ratio"] = row.ratio;
   return json;
-}
-
-/// RFC 4180.
-std::string quoted(std::string text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  for (std::size_t at = text.find('"'); at != std::string::npos; at = text.find('"', at + 2)) text.insert(at, "\"");
-  return '"' + text + '"';
 }
 
 std::string measured(double value) {
@@ -71,7 +65,7 @@ std::string sweep_csv(const Sweep& sweep) {
   for (const SweepRow& r : sweep.rows) {
     const ErrorFigures& e = r.error;
     const Setting& s = r.setting;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}", quoted(r.map), r.angle, quoted(s.technique), s.loop,
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}", csv_field(r.map), r.angle, csv_field(s.technique), s.loop,
                         s.loop.empty() ? "" : fmt::format("{}", s.count), to_string(s.filter), r.backend, e.rays,
                         e.ambiguous, e.judged);
     for (double figure : {e.wrong_percent(), e.percent(e.missed), e.percent(e.false_hit), e.percent(e.wrong_layer),

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "measure/quantiles.hpp"
 #include "relievo/measure.hpp"
 
 namespace relievo {
@@ -17,19 +18,6 @@ bool is_hit(const Hit& hit) {
 
 bool is_finite(const Hit& hit) {
   return std::isfinite(hit.t) && std::isfinite(hit.u) && std::isfinite(hit.v) && std::isfinite(hit.h);
-}
-
-/// Nearest-rank quantile: the smallest value that at least a share q of the values do not exceed. Reorders `values`.
-double quantile(std::vector<double>& values, double q) {
-  if (values.empty()) return 0;
-  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
-}
-
-ErrorQuantiles quantiles(std::vector<double>& values) {
-  return {quantile(values, 0.50), quantile(values, 0.99), quantile(values, 1.0)};
 }
 
 struct Deviations {

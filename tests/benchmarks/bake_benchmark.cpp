@@ -18,7 +18,9 @@ namespace {
 /// An engine keeps its programs: shaders are compiled once, though drivers make their own code of them for every Job.
 void keep_programs() {
   static const bool kept = [] {
-    Result<std::unique_ptr<Cache>> cache = open_cache({std::filesystem::temp_directory_path() / "relievo_benchmarks"});
+    CacheOptions options;
+    options.folder = std::filesystem::temp_directory_path() / "relievo_benchmarks";
+    Result<std::unique_ptr<Cache>> cache = open_cache(options);
     if (cache) use_program_cache(std::move(*cache));
     return cache.has_value();
   }();

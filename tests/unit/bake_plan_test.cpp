@@ -43,7 +43,7 @@ TEST(BakePlan, LayersThatAreApartTakeFourTimesTheHeightMapAtATime) {
   ASSERT_TRUE(plan);
   EXPECT_EQ(plan->layers, 1);
   EXPECT_EQ(plan->in_buffer(0, 1) * sizeof(float), 48 * mib);
-  EXPECT_EQ(sectors(512).plan()->layers, 5) << "16 MiB in any case";
+  EXPECT_EQ(sectors(512).plan()->layers, 2) << "8 MiB in any case";
 }
 
 TEST(BakePlan, LayersThatReadOneAnotherStayTogetherInSeveralBuffers) {

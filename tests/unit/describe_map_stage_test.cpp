@@ -25,6 +25,13 @@ TEST(ParseMap, ReadsEveryField) {
   EXPECT_EQ(map->file, map_path);
 }
 
+TEST(ParseMap, ReadsWithWhichAddressModesLayersAreApart) {
+  const auto map =
+      parse_map(with(examples::map, "channels = 3", "channels = 3\nlayers_apart = [\"clip\", \"repeat\"]"), map_path);
+  ASSERT_TRUE(map) << format(map.error());
+  EXPECT_EQ(map->layers_apart, (std::vector<std::string>{"clip", "repeat"}));
+}
+
 TEST(ParseMap, AllowsAProvidedMapWithoutAModule) {
   const auto map = parse_map(examples::provided_map, "shaders/maps/height/map.toml");
   ASSERT_TRUE(map) << format(map.error());
@@ -79,6 +86,8 @@ const Fault map_faults[] = {
     {"ZeroChannels", "channels = 3", "channels = 0", "describe.range", 5, 12, "from 1 to 4"},
     {"FiveChannels", "channels = 3", "channels = 5", "describe.range", 5, 12, "is 5; an integer from 1 to 4"},
     {"TextChannels", "channels = 3", "channels = \"three\"", "describe.type", 5, 12, "the string \"three\""},
+    {"UnknownAddressOfLayersApart", "channels = 3", "channels = 3\nlayers_apart = [\"wrap\"]", "describe.range", 6, 17,
+     "\"wrap\", which is not known"},
     {"MissingSampler", "sampler = \"relievo_normal_map\"\n", "", "describe.missing-key", 1, 1, "\"sampler\""},
     {"BadSampler", "\"relievo_normal_map\"", "\"a-b\"", "describe.name", 6, 11, "GLSL identifier"},
     {"ReservedSampler", "\"relievo_normal_map\"", "\"gl_map\"", "describe.name", 6, 11, "\"gl_map\""},

@@ -9,7 +9,7 @@ namespace relievo {
 
 namespace {
 
-constexpr std::size_t least_job_bytes = std::size_t{16} << 20;  // below it Jobs cost more than memory that they save
+constexpr std::size_t least_job_bytes = std::size_t{8} << 20;  // below it Jobs cost more than memory that they save
 constexpr std::size_t shader_floats = std::numeric_limits<std::int32_t>::max();  // shaders count in int
 
 bool layers_are_apart(const MapDescriptor& map, AddressMode address) {

@@ -41,9 +41,8 @@ std::vector<Cell> cells(const PictureAgreement& a) {
           {a.left},
           {psnr_text(a.difference)},
           {fixed(a.flip, 4)},
-          {fixed(o ? o->pixels.p50 : -1, 2)},
-          {fixed(o ? o->pixels.p99 : -1, 2)},
-          {fixed(o ? o->pixels.max : -1, 2)},
+          {fixed(o ? o->pixels.p50 : -1, 3)},
+          {fixed(o ? o->pixels.p99 : -1, 3)},
           {fixed(o ? o->lost_percent() : -1, 2)},
           {fixed(a.difference.mask_iou, 4)}};
 }
@@ -67,7 +66,6 @@ std::string picture_table(const Evaluation& evaluation, const std::string& scene
                 {"FLIP", true},
                 {"offset px p50", true},
                 {"p99", true},
-                {"max", true},
                 {"lost %", true},
                 {"IoU", true}},
                rows);

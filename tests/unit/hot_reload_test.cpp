@@ -370,7 +370,9 @@ TEST_F(HotReload, AThreadOfItsOwnFollowsManyFastEdits) {
   for (int i = 0; i < 3; ++i) ids.push_back(add("one", "surface", static_cast<AddressMode>(i)));
   ASSERT_TRUE(waits_for([&] { return reloader_->counts().compiled == 3; }));
   for (int i = 0; i < 200; ++i) {
-    folder_.write("user/one/part.glsl", part("one", "0.5 + " + std::to_string(i) + ".0"));
+    // At once, as editors do: a file half written, and left so for longer than is waited for, would be an error.
+    folder_.write("part.new", part("one", "0.5 + " + std::to_string(i) + ".0"));
+    fs::rename(folder_ / "part.new", folder_ / "user/one/part.glsl");
     std::this_thread::sleep_for(1ms);
   }
   EXPECT_TRUE(waits_for([&] {

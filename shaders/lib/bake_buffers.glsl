@@ -23,10 +23,20 @@ layout(std430, set = 0, binding = 8) buffer MapTexels6 { float relievo_map_texel
 layout(std430, set = 0, binding = 9) buffer MapTexels7 { float relievo_map_texels_7[]; };
 #endif
 
+// The buffer that holds a value, and its index there. Without a division, which is slow where it is emulated.
+int relievo_map_part(inout int index) {
+  int part = 0;
+  for (int k = 1; k < RELIEVO_BAKE_BUFFERS; ++k) {
+    bool beyond = index >= relievo_bake_layers.z;
+    index -= beyond ? relievo_bake_layers.z : 0;
+    part += beyond ? 1 : 0;
+  }
+  return part;
+}
+
 float relievo_map_load(int index) {
 #if RELIEVO_BAKE_BUFFERS > 1
-  int part = index / relievo_bake_layers.z;
-  index -= part * relievo_bake_layers.z;
+  int part = relievo_map_part(index);
   if (part == 1) return relievo_map_texels_1[index];
 #if RELIEVO_BAKE_BUFFERS > 2
   if (part == 2) return relievo_map_texels_2[index];
@@ -52,8 +62,7 @@ float relievo_map_load(int index) {
 
 void relievo_map_store(int index, float value) {
 #if RELIEVO_BAKE_BUFFERS > 1
-  int part = index / relievo_bake_layers.z;
-  index -= part * relievo_bake_layers.z;
+  int part = relievo_map_part(index);
   if (part == 1) {
     relievo_map_texels_1[index] = value;
     return;

@@ -58,7 +58,7 @@ TEST(Crew, SharesTasksAmongItsThreads) {
 
 TEST(LargestFirst, KeepsTheOrderOfEqualSizes) {
   const std::size_t sizes[] = {3, 9, 3, 0, 9};
-  EXPECT_EQ(largest_first(sizes), (std::vector<std::size_t>{1, 4, 0, 2, 3}));
+  EXPECT_EQ(largest_first(5, [&](std::size_t i) { return sizes[i]; }), (std::vector<std::size_t>{1, 4, 0, 2, 3}));
 }
 
 }  // namespace

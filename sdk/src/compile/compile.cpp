@@ -69,11 +69,8 @@ Result<std::vector<ShaderModule>> make_modules(const ComposedProgram& program,
                                                std::span<const SpirvWords> front_end_words,
                                                const CompileOptions& options, Crew& crew) {
   std::vector<std::optional<Result<ShaderModule>>> results(program.shaders.size());
-  std::vector<std::size_t> sizes;
-  for (const SpirvWords& words : front_end_words) sizes.push_back(words.size());
-  const std::vector<std::size_t> order = largest_first(sizes);
-  crew.run(order.size(), [&](std::size_t k) {
-    const std::size_t i = order[k];
+  const auto size_of = [&](std::size_t i) { return front_end_words[i].size(); };
+  crew.run(largest_first(results.size(), size_of), [&](std::size_t i) {
     Result<SpirvWords> words = finish_words(front_end_words[i], options, program.key);
     results[i] =
         words ? parse_shipped(program.shaders[i].stage, *std::move(words), front_end_words[i], options, program.key)
@@ -113,9 +110,8 @@ Outputs make_outputs(const ComposedProgram& program, const EmitContext& context,
   const std::vector<StageNeighbours> neighbours = find_neighbours(modules);
   Outputs outputs(modules.size());
   std::vector<std::function<void()>> tasks;
-  std::vector<std::size_t> sizes;
-  for (const ShaderModule& module : modules) sizes.push_back(module.spirv->size());
-  for (const std::size_t i : largest_first(sizes)) {
+  const auto size_of = [&](std::size_t i) { return modules[i].spirv->size(); };
+  for (const std::size_t i : largest_first(modules.size(), size_of)) {
     outputs.texts[i].resize(families.size());
     for (std::size_t f = 0; f < families.size(); ++f) {
       tasks.emplace_back([&, i, f] {

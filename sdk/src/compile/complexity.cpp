@@ -54,7 +54,7 @@ class Scanner {
   }
   /// For what is not a mark.
   void pass(char c) {
-    if (c > ' ') previous_ = c;
+    if (static_cast<unsigned char>(c) > ' ') previous_ = c;
   }
 
  private:

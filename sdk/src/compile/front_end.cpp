@@ -94,8 +94,7 @@ Status parse_all(std::span<const std::unique_ptr<ParsedShader>> shaders, std::sp
                  const ComposedProgram& program) {
   enum class Outcome : char { parsed, too_complex, wrong };
   std::vector<Outcome> outcomes(shaders.size(), Outcome::too_complex);
-  crew.run(order.size(), [&](std::size_t k) {
-    const std::size_t i = order[k];
+  crew.run(order, [&](std::size_t i) {
     if (has_runaway_expression(program.shaders[i].text)) return;
     outcomes[i] = shaders[i]->parse() ? Outcome::parsed : Outcome::wrong;
   });
@@ -117,20 +116,18 @@ Result<std::vector<SpirvWords>> run_front_end(const ComposedProgram& program, Cr
   std::vector<glslang::TPoolAllocator> pools(program.shaders.size());
   glslang::SetThreadPoolAllocator(&pools.front());
   std::vector<std::unique_ptr<ParsedShader>> shaders;
-  std::vector<std::size_t> sizes;
   glslang::TProgram linked;  // destroyed before the shaders it refers to
   for (const ComposedShader& source : program.shaders) {
     shaders.push_back(std::make_unique<ParsedShader>(source));
-    sizes.push_back(source.text.size());
     linked.addShader(&shaders.back()->shader());
   }
-  const std::vector<std::size_t> order = largest_first(sizes);
+  const std::vector<std::size_t> order =
+      largest_first(shaders.size(), [&](std::size_t i) { return program.shaders[i].text.size(); });
   if (auto ok = parse_all(shaders, order, crew, program); !ok) return tl::unexpected(ok.error());
   if (!linked.link(kMessages)) return tl::unexpected(glsl_error(linked.getInfoLog(), program.key));
 
   std::vector<SpirvWords> modules(shaders.size());
-  crew.run(order.size(), [&](std::size_t k) {
-    const std::size_t i = order[k];
+  crew.run(order, [&](std::size_t i) {
     modules[i] = generate_spirv(*linked.getIntermediate(shaders[i]->shader().getStage()), pools[i]);
   });
   return modules;

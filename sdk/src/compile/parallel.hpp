@@ -33,8 +33,14 @@ class Crew {
     for (std::thread& other : others_) other.join();
   }
 
-  /// Calls task(i) once for every i below `count`, in this order; returns when all have ended. The first exception of a
-  /// task is thrown here.
+  /// Calls task(i) for every i in this order; returns when all have ended. The first exception of a task is thrown
+  /// here.
+  template <class Task>
+  void run(std::span<const std::size_t> order, const Task& task) {
+    run(order.size(), [&](std::size_t k) { task(order[k]); });
+  }
+
+  /// The same for every i below `count`.
   template <class Task>
   void run(std::size_t count, const Task& task) {
     std::atomic<std::size_t> next = 0;
@@ -104,12 +110,13 @@ class Crew {
   bool ends_ = false;
 };
 
-/// The order in which tasks of these sizes should begin: a long one at the end would leave the other threads idle, and
-/// the first begins while those still wake up.
-inline std::vector<std::size_t> largest_first(std::span<const std::size_t> sizes) {
-  std::vector<std::size_t> order(sizes.size());
+/// The order in which `count` tasks of size_of(i) should begin: a long one at the end would leave the other threads
+/// idle, and the first begins while those still wake up.
+template <class SizeOf>
+std::vector<std::size_t> largest_first(std::size_t count, const SizeOf& size_of) {
+  std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return size_of(a) > size_of(b); });
   return order;
 }
 

@@ -7,6 +7,7 @@
 
 #include "job/program.hpp"
 #include "maps/bake_plan.hpp"
+#include "maps/check_finite.hpp"
 #include "relievo/maps.hpp"
 
 namespace relievo {
@@ -110,15 +111,6 @@ Result<std::vector<float>> bake_texels(Backend& backend, const PreparedProgram& 
   return texels;
 }
 
-Status check_finite(const MapData& map) {
-  const auto found =
-      std::find_if(map.texels.begin(), map.texels.end(), [](float value) { return !std::isfinite(value); });
-  if (found == map.texels.end()) return {};
-  return fail(ErrorCode::backend, "maps.non-finite",
-              fmt::format("map '{}' has the value {} at element {}; expected a finite number", map.name, *found,
-                          found - map.texels.begin()));
-}
-
 }  // namespace
 
 Status bake_map(Backend& backend, const Registry& registry, std::string_view name, MapSet& maps,
@@ -147,7 +139,7 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
   Result<std::vector<float>> texels = bake_texels(backend, *prepared, descriptor, maps, output, *plan, messages);
   if (!texels) return tl::unexpected(texels.error());
   output.texels = std::move(*texels);
-  if (Status status = check_finite(output); !status) return status;
+  if (Status status = check_finite(output, ErrorCode::backend, "maps.non-finite"); !status) return status;
   if (Status status = quantise(output, bits, descriptor.rounding); !status) return status;
   maps[descriptor.name] = std::move(output);
   return {};

@@ -2,25 +2,11 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
 
 #include "maps/certifiers.hpp"
+#include "maps/check_finite.hpp"
 
 namespace relievo {
-
-namespace {
-
-/// No comparison catches a NaN.
-Status check_finite(const MapData& map) {
-  const auto bad =
-      std::find_if(map.texels.begin(), map.texels.end(), [](float value) { return !std::isfinite(value); });
-  if (bad == map.texels.end()) return {};
-  return fail(ErrorCode::usage, "certify.non-finite",
-              fmt::format("map '{}' has the value {} at element {}; expected a finite number", map.name, *bad,
-                          bad - map.texels.begin()));
-}
-
-}  // namespace
 
 Result<Certificate> certify(const HeightMap& height_map, const MapData& map, const CertifyOptions& options) {
   const auto& known = certifiers::all();
@@ -34,7 +20,8 @@ Result<Certificate> certify(const HeightMap& height_map, const MapData& map, con
   certificate.map = map.name;
   certificate.promise = found->second->promise;
   certificate.guaranteed = found->second->guaranteed;
-  if (Status status = check_finite(map); !status) return tl::unexpected(status.error());
+  if (Status status = check_finite(map, ErrorCode::usage, "certify.non-finite"); !status)
+    return tl::unexpected(status.error());
   if (Status status = found->second->check(height_map, map, options, certificate); !status)
     return tl::unexpected(status.error());
   return certificate;

@@ -93,9 +93,13 @@ void print_table(const nlohmann::json& rows) {
                r["rays_per_s"].get<double>() / 1e6, r["ratio"].get<double>(), r["steps"].get<double>(),
                r["fetches"].get<double>(), r["wrong_percent"].get<double>(), r["uv_texels"]["p99"].get<double>(),
                r["height"]["p99"].get<double>(), r["map_bytes"].get<double>() / 1e6);
-    if (r.contains("method"))
-      fmt::print("embree: {} on {} threads, built in {:.2f} s, at most {:.1f} MB\n", r["method"].get<std::string>(),
-                 r["threads"].get<unsigned>(), r["build_s"].get<double>(), r["peak_bytes"].get<double>() / 1e6);
+    if (!r.contains("method")) continue;
+    fmt::print("embree: {} on {} threads, built in {:.2f} s, at most {:.1f} MB; every way, in Mrays/s:",
+               r["method"].get<std::string>(), r["threads"].get<unsigned>(), r["build_s"].get<double>(),
+               r["peak_bytes"].get<double>() / 1e6);
+    for (const auto& [method, seconds] : r["methods"].items())
+      fmt::print(" {} {:.1f}", method, r["rays"].get<double>() / seconds.get<double>() / 1e6);
+    fmt::print("\n");
   }
 }
 

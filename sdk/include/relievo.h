@@ -1,4 +1,4 @@
-/* Relievo for C and for whatever can call C: techniques, programs, archives and maps (docs/c-api.md).
+/* Relievo for C and for whatever can call C: techniques, programs, archives, maps and rays (docs/c-api.md).
  *
  * Every function but the `_free` ones and the versions returns a status and takes a `relievo_error*`, which may be
  * NULL; the error is the caller's own, so nothing is kept by thread. A status that is not RELIEVO_OK leaves the results
@@ -432,7 +432,7 @@ typedef struct relievo_bake_desc {
   const float* heights; /* width * height floats in [0,1], row 0 first */
   int32_t width, height;
   relievo_address_mode address;
-  const relievo_value* values; /* "map.parameter" */
+  const relievo_value* values; /* "cone.bits" */
   size_t value_count;
   const char* backend; /* "vulkan", "opengl" */
 } relievo_bake_desc;
@@ -460,6 +460,56 @@ relievo_status relievo_map_bake(const relievo_registry* registry, const relievo_
 void relievo_map_free(relievo_map* map);
 /* Thread-safe. */
 relievo_status relievo_map_get(const relievo_map* map, relievo_map_info* info, relievo_error* error);
+
+/* Rays: where they first meet the surface, found by a technique on a backend, or exactly, on the CPU. */
+
+typedef struct relievo_tracer relievo_tracer;
+
+/* Zeros are the defaults. */
+typedef struct relievo_trace_desc {
+  const char* technique; /* "relief"; not looked at with the backend "oracle" */
+  const char* backend;   /* "vulkan", "opengl"; "oracle" finds exact first hits on the CPU, in double precision */
+  const float* heights;  /* width * height floats in [0,1], row 0 first; copied */
+  int32_t width, height;
+  relievo_address_mode address;
+  relievo_height_filter filter; /* of a technique; the oracle's surface is bilinear, as RELIEVO_EXACT makes it */
+  const relievo_value* values;  /* "relief.linear_steps", "cone.bits" */
+  size_t value_count;
+  uint32_t threads; /* of the oracle; 0 = all */
+} relievo_trace_desc;
+
+/* In texture coordinates and H: 0 on the base, 1 on the lid. The point at t is (u, v, h) + t * (du, dv, dh). */
+typedef struct relievo_ray {
+  double u, v, h;
+  double du, dv, dh;
+  double t_max; /* the ray ends there; INFINITY, or any number from 0 on */
+} relievo_ray;
+
+typedef int32_t relievo_hit_status;
+enum {
+  RELIEVO_MISS = 0,      /* left between base and lid without a hit, or came to t_max; rays that are not finite */
+  RELIEVO_HIT = 1,       /* at t, for the first time, the ray is not above the surface */
+  RELIEVO_EXHAUSTED = 2, /* the technique ran out of steps */
+  RELIEVO_INSIDE = 3,    /* starts below the surface; t is 0 */
+  RELIEVO_OUTSIDE = 4    /* left the map, with RELIEVO_CLIP */
+};
+
+/* Of what is no hit, t is where the search ended. */
+typedef struct relievo_hit {
+  relievo_hit_status status;
+  int32_t ambiguous; /* oracle only, not 0: passes within 1e-5 H of the surface before t without touching it */
+  double t, u, v, h;
+  uint32_t steps, fetches; /* loop iterations, of the oracle cells; and texel reads */
+} relievo_hit;
+
+/* Opens the backend, compiles the technique and bakes its maps. RELIEVO_ERROR_UNSUPPORTED where the backend has no
+ * driver here. Thread-safe. */
+relievo_status relievo_tracer_create(const relievo_registry* registry, const relievo_trace_desc* desc,
+                                     relievo_tracer** tracer, relievo_error* error);
+void relievo_tracer_free(relievo_tracer* tracer);
+/* One hit a ray, in order; both may be NULL when there are none. Thread-safe: on a backend, calls wait for each other. */
+relievo_status relievo_tracer_trace(const relievo_tracer* tracer, const relievo_ray* rays, size_t count,
+                                    relievo_hit* hits, relievo_error* error);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
 /* A C99 program that uses the SDK as an engine would: compiles a program, has a manifest compiled into an archive, reads
- * it, edits a technique while a reloader watches it, bakes a map. Arguments: a manifest, one with errors, a folder to
+ * it, edits a technique while a reloader watches it, bakes a map, traces rays. Arguments: a manifest, one with errors, a folder to
  * write into (with an empty folder techniques/edited), a folder with a technique called `broken`. */
 #include <relievo.h>
 
@@ -306,6 +306,7 @@ static void use_archive(const char* path) {
 
 static void use_maps(const relievo_registry* registry) {
   enum { extent = 8 };
+  static const relievo_value misspelt[] = {{"cone.bit", 8}};
   float heights[extent * extent];
   relievo_bake_desc desc;
   relievo_map* map = NULL;
@@ -336,11 +337,52 @@ static void use_maps(const relievo_registry* registry) {
   CHECK(relievo_map_bake(registry, &desc, &map, &error) == RELIEVO_ERROR_USAGE && map == NULL);
   CHECK(strcmp(error.id, "backend.unknown") == 0);
   desc.backend = "vulkan";
+  desc.values = misspelt;
+  desc.value_count = 1;
+  CHECK(relievo_map_bake(registry, &desc, &map, &error) == RELIEVO_ERROR_USAGE && map == NULL);
+  CHECK(strcmp(error.id, "c.parameter") == 0 && strstr(error.message, "'cone.bits'") != NULL);
+  desc.value_count = 0;
   heights[9] = NAN;
   CHECK(relievo_map_bake(registry, &desc, &map, &error) == RELIEVO_ERROR_USAGE && map == NULL);
   CHECK(strcmp(error.id, "c.height") == 0 && strstr(error.message, "(1, 1)") != NULL);
   desc.width = -1;
   CHECK(relievo_map_bake(registry, &desc, &map, &error) == RELIEVO_ERROR_USAGE && map == NULL);
+}
+
+/* A ramp from 0 at the left to 7/8: the technique finds what the oracle finds. */
+static void use_rays(const relievo_registry* registry) {
+  enum { extent = 8, rays = 16 };
+  float heights[extent * extent];
+  relievo_ray ray[rays];
+  relievo_hit truth[rays], hit[rays];
+  relievo_trace_desc desc;
+  relievo_tracer *oracle = NULL, *tracer = NULL;
+  relievo_error error;
+  size_t i;
+  for (i = 0; i < extent * extent; ++i) heights[i] = (float)(i % extent) / extent;
+  for (i = 0; i < rays; ++i) {
+    const relievo_ray down = {0.1 + i / 32.0, 0.3, 1, 0.25, 0.125, -1, INFINITY};
+    ray[i] = down;
+  }
+  memset(&desc, 0, sizeof desc);
+  desc.heights = heights;
+  desc.width = desc.height = extent;
+  desc.address = RELIEVO_CLAMP;
+  desc.backend = "oracle";
+  OK(relievo_tracer_create(registry, &desc, &oracle, &error));
+  desc.backend = "vulkan";
+  desc.technique = "quadrant_maxima";
+  OK(relievo_tracer_create(registry, &desc, &tracer, &error));
+  if (oracle && tracer && OK(relievo_tracer_trace(oracle, ray, rays, truth, &error)) &&
+      OK(relievo_tracer_trace(tracer, ray, rays, hit, &error))) {
+    for (i = 0; i < rays; ++i) {
+      CHECK(truth[i].status == RELIEVO_HIT && hit[i].status == RELIEVO_HIT);
+      CHECK(fabs(hit[i].t - truth[i].t) < 1e-5);
+    }
+    printf("first hit at t = %.6f\n", hit[0].t);
+  }
+  relievo_tracer_free(oracle);
+  relievo_tracer_free(tracer);
 }
 
 int main(int argc, char** argv) {
@@ -360,6 +402,7 @@ int main(int argc, char** argv) {
     use_registry(registry);
     use_program(registry);
     use_maps(registry);
+    use_rays(registry);
   }
   relievo_registry_free(registry);
   use_broken_technique(argv[4]);

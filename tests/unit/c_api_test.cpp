@@ -5,7 +5,6 @@
 #include <cstring>
 #include <functional>
 #include <map>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -36,6 +35,12 @@ struct Handles {
     relievo_archive_open((folder / "a.rla").c_str(), &archive, nullptr);
     const relievo_reload_desc reload{};
     relievo_reloader_create(&reload, &reloader, nullptr);
+    const float height = 0.5f;
+    relievo_trace_desc rays{};
+    rays.backend = "oracle";
+    rays.heights = &height;
+    rays.width = rays.height = 1;
+    relievo_tracer_create(registry, &rays, &tracer, nullptr);
   }
   ~Handles() {
     relievo_registry_free(registry);
@@ -44,6 +49,7 @@ struct Handles {
     relievo_summary_free(summary);
     relievo_archive_free(archive);
     relievo_reloader_free(reloader);
+    relievo_tracer_free(tracer);
   }
   Handles(const Handles&) = delete;
   Handles& operator=(const Handles&) = delete;
@@ -55,6 +61,7 @@ struct Handles {
   relievo_summary* summary = nullptr;
   relievo_archive* archive = nullptr;
   relievo_reloader* reloader = nullptr;
+  relievo_tracer* tracer = nullptr;
 };
 
 /// A call of which the pointers whose bit is set in `nulls` are NULL.
@@ -79,6 +86,9 @@ struct Results {
   relievo_reloader* reloader = nullptr;
   relievo_reload_id id = 0;
   relievo_reload_counts reload_counts{};
+  relievo_tracer* tracer = nullptr;
+  relievo_ray ray{0.25, 0.25, 1, 0, 0, -1, 2};
+  relievo_hit hit{};
   relievo_description description{};
   relievo_parameter parameter{};
   relievo_program_parameter slot{};
@@ -109,6 +119,7 @@ std::map<std::string, Call> calls(Handles& h, Results& r) {
   static const relievo_permute_desc permute_desc{};
   static const relievo_bake_desc bake_desc{};
   static const relievo_reload_desc reload_desc{};
+  static const relievo_trace_desc trace_desc{};
   return {
       RELIEVO_CALL(relievo_registry_load, 1, nullptr, 0, unless(n, 0, &r.registry)),
       RELIEVO_CALL(relievo_registry_count, 2, unless(n, 0, h.registry), RELIEVO_MAP, unless(n, 1, &r.count)),
@@ -166,23 +177,28 @@ std::map<std::string, Call> calls(Handles& h, Results& r) {
       RELIEVO_CALL(relievo_archive_verify, 1, unless(n, 0, h.archive)),
       RELIEVO_CALL(relievo_map_bake, 3, unless(n, 0, h.registry), unless(n, 1, &bake_desc), unless(n, 2, &r.map)),
       RELIEVO_CALL(relievo_map_get, 2, static_cast<const relievo_map*>(nullptr), unless(n, 1, &r.info)),
+      RELIEVO_CALL(relievo_tracer_create, 3, unless(n, 0, h.registry), unless(n, 1, &trace_desc),
+                   unless(n, 2, &r.tracer)),
+      RELIEVO_CALL(relievo_tracer_trace, 3, unless(n, 0, h.tracer), unless(n, 1, &r.ray), 1, unless(n, 2, &r.hit)),
   };
 }
 
 /// The functions of the header that return a status.
 std::vector<std::string> declared_functions() {
   const std::string header = test::TemporaryFolder::read(RELIEVO_SOURCE_DIR "/sdk/include/relievo.h");
-  const std::regex declaration("\\nrelievo_status (relievo_\\w+)\\(");
+  const std::string returns = "\nrelievo_status ";
   std::vector<std::string> names;
-  for (std::sregex_iterator it(header.begin(), header.end(), declaration), end; it != end; ++it)
-    names.push_back((*it)[1]);
+  for (std::size_t at = header.find(returns); at != std::string::npos; at = header.find(returns, at + 1)) {
+    const std::size_t begin = at + returns.size();
+    names.push_back(header.substr(begin, header.find('(', begin) - begin));
+  }
   return names;
 }
 
 TEST(CApi, EveryFunctionRefusesEveryNull) {
   Handles handles;
   ASSERT_TRUE(handles.registry && handles.program && handles.manifest && handles.summary && handles.archive &&
-              handles.reloader);
+              handles.reloader && handles.tracer);
   Results results;
   const std::map<std::string, Call> table = calls(handles, results);
   const std::vector<std::string> names = declared_functions();
@@ -227,6 +243,7 @@ TEST(CApi, FreeingNullDoesNothing) {
   relievo_archive_free(nullptr);
   relievo_map_free(nullptr);
   relievo_reloader_free(nullptr);
+  relievo_tracer_free(nullptr);
 }
 
 class CApiPrograms : public ::testing::Test {

@@ -1,5 +1,6 @@
 #include "c_api/registry.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <memory>
 
@@ -61,7 +62,32 @@ relievo_parameter describe(const Parameter& parameter) {
           parameter.is_loop};
 }
 
+std::vector<std::string> parameter_names(const relievo_registry& registry) {
+  std::vector<std::string> names;
+  for (const auto& items : registry.items) {
+    for (const Item& item : items) {
+      for (const Parameter& parameter : *item.parameters) names.push_back(item.name + "." + parameter.name);
+    }
+  }
+  return names;
+}
+
 }  // namespace
+
+Result<std::map<std::string, double>> values_of(const relievo_registry& registry, const relievo_value* values,
+                                                std::size_t count) {
+  Result<std::map<std::string, double>> by_name = values_of(values, count);
+  if (!by_name || by_name->empty()) return by_name;
+  const std::vector<std::string> known = parameter_names(registry);
+  for (const auto& [name, value] : *by_name) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string nearest = nearest_name(name, known);
+    return fail(ErrorCode::usage, "c.parameter",
+                fmt::format("'{}' is no parameter{}", name,
+                            nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+  }
+  return by_name;
+}
 
 }  // namespace relievo::c_api
 

@@ -17,3 +17,12 @@ struct relievo_registry {
   relievo::Registry registry;
   std::vector<Item> items[3];  ///< by relievo_kind, each by name
 };
+
+namespace relievo::c_api {
+
+/// Values of parameters by "owner.parameter". Errors: "c.null"; "c.parameter" for one that nothing has, naming the
+/// nearest.
+Result<std::map<std::string, double>> values_of(const relievo_registry& registry, const relievo_value* values,
+                                                std::size_t count);
+
+}  // namespace relievo::c_api

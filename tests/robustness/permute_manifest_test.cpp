@@ -150,7 +150,12 @@ TEST_F(PermuteBrokenTechnique, IsReportedOnceWithPlaceAndCountWithinTwoSeconds) 
   const double seconds = children_seconds() - before;  // a busy machine makes the wall time longer
   std::printf("an error in a technique of 512 permutations is reported after %.2f s, %.2f s of CPU time\n", wall,
               seconds);
-  EXPECT_LT(seconds, 2.0);
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  constexpr double limit = 20;  // such a build's speed is nobody's
+#else
+  constexpr double limit = 2;
+#endif
+  EXPECT_LT(seconds, limit);
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr(project_ / "techniques/mine/mine.glsl:5:3: error: "));
   EXPECT_THAT(result.err, HasSubstr("the same error in 512 of 512 permutations"));

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -27,6 +28,7 @@ inline const Registry& registry() {
 /// With validation or debug output; opened once a process.
 inline Backend& backend(const std::string& name) {
   static std::map<std::string, std::unique_ptr<Backend>> opened;
+  static const auto close_all = [] { opened.clear(); };
   std::unique_ptr<Backend>& slot = opened[name];
   if (!slot) {
     BackendOptions options;
@@ -34,6 +36,7 @@ inline Backend& backend(const std::string& name) {
     Result<std::unique_ptr<Backend>> result = open_backend(name, options);
     if (!result) throw std::runtime_error(format(result.error()));
     slot = std::move(*result);
+    std::atexit(close_all);  // before the statics of the drivers and layers that were loaded just now
   }
   return *slot;
 }

@@ -83,7 +83,7 @@ Status run(const relievo_manifest& handle, const relievo_permute_desc& desc, rel
   Result<PermuteSummary> result = permute(handle.registry, handle.manifest, handle.plan, desc.archive, options);
   if (!result) return tl::unexpected(result.error());
   for (FoldedError& folded : result->errors) folded.error = name_file_on_disk(std::move(folded.error), handle.registry);
-  const Status status = first_error(*result);
+  Status status = first_error(*result);
   *summary = new relievo_summary{*std::move(result)};
   return status;
 }

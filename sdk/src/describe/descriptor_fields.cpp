@@ -109,7 +109,7 @@ void check_schema(TomlReader& descriptor) {
 }
 
 std::string read_name(TomlReader& descriptor) {
-  const std::string name = descriptor.name("name");
+  std::string name = descriptor.name("name");
   const std::string folder = file_name_of(folder_of(descriptor.file()));
   if (!folder.empty() && folder != name) {
     descriptor.report("describe.name",

@@ -22,7 +22,7 @@ bool is_glsl_identifier(std::string_view name) {
 }
 
 std::string read_sampler(TomlReader& reader) {
-  const std::string sampler = reader.text("sampler");
+  std::string sampler = reader.text("sampler");
   if (!is_glsl_identifier(sampler)) {
     reader.report("describe.name",
                   fmt::format("\"sampler\" of the map is {}; a GLSL identifier without \"gl_\" and \"__\" is expected",

@@ -87,7 +87,7 @@ std::optional<std::string> TomlReader::string_of(const TomlEntry& entry) {
 std::string TomlReader::text(std::string_view key) {
   const TomlEntry* entry = require(key);
   if (!entry) return {};
-  const std::string value = string_of(*entry).value_or("?");
+  std::string value = string_of(*entry).value_or("?");
   if (value.find_first_not_of(" \t\r\n") == value.npos) {
     report_at("describe.missing-key", fmt::format("{} of the {} is empty; a text is expected", quote(key), label_),
               entry->value);
@@ -240,7 +240,7 @@ std::string TomlReader::path(std::string_view key) {
   const TomlEntry* entry = require(key);
   const std::optional<std::string> value = entry ? string_of(*entry) : std::nullopt;
   if (!value) return {};
-  const std::string joined = join_source_path(folder_of(file()), *value);
+  std::string joined = join_source_path(folder_of(file()), *value);
   if (joined.empty()) {
     report(
         "describe.escapes-folder",

@@ -108,7 +108,7 @@ Status check_name_is_free(const fs::path& descriptor, const std::string& prefix,
 Status read_descriptor_folder(const fs::path& folder, const std::string& name, const Kind& kind, const fs::path& root,
                               Registry& registry) {
   const std::string prefix = kind.tree_folder + name + "/";
-  if (const Status free = check_name_is_free(folder / kind.descriptor, prefix, registry); !free) return free;
+  if (Status free = check_name_is_free(folder / kind.descriptor, prefix, registry); !free) return free;
   const Result<std::vector<fs::path>> sources = list_sources(folder, root);
   if (!sources) return tl::unexpected(sources.error());
   for (const fs::path& source : *sources) {
@@ -149,7 +149,7 @@ Status read_user_folder(const fs::path& folder, Registry& registry) {
   for (const fs::path& subfolder : *subfolders) {
     const Kind* kind = kind_of(subfolder, root);
     if (!kind) continue;
-    const Status read = read_descriptor_folder(subfolder, subfolder.filename().generic_string(), *kind, root, registry);
+    Status read = read_descriptor_folder(subfolder, subfolder.filename().generic_string(), *kind, root, registry);
     if (!read) return read;
   }
   return {};

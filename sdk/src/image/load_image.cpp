@@ -32,7 +32,7 @@ Status check_extent(const ImageSource& source, std::int64_t width, std::int64_t 
                       fmt::format("is {}x{}; a width and height of 1 to {} are expected", width, height, max_extent));
   }
   // The densest code of all formats here is deflated 1-bit PNG: at most 1032 bytes from one, 8 pixels each.
-  constexpr std::uint64_t max_pixels_per_byte = 1032 * 8;
+  constexpr std::uint64_t max_pixels_per_byte = std::uint64_t{1032} * 8;
   if (static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) >
       max_pixels_per_byte * source.bytes.size()) {
     return file_error(

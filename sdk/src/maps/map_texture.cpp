@@ -27,6 +27,7 @@ TexelAddress texel_address(AddressMode mode) {
 template <class Stored>
 Stored stored_value(float value) {
   if constexpr (std::is_same_v<Stored, float>) return value;
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): no value is negative
   return static_cast<Stored>(value * static_cast<float>(std::numeric_limits<Stored>::max()) + 0.5f);
 }
 

@@ -502,8 +502,8 @@ typedef struct relievo_hit {
   uint32_t steps, fetches; /* loop iterations, of the oracle cells; and texel reads */
 } relievo_hit;
 
-/* Opens the backend, compiles the technique and bakes its maps. RELIEVO_ERROR_UNSUPPORTED where the backend has no
- * driver here. Thread-safe. */
+/* Opens the backend, bakes the maps and traces one ray, so that what is wrong is said here. RELIEVO_ERROR_UNSUPPORTED
+ * where the backend has no driver here. Thread-safe. */
 relievo_status relievo_tracer_create(const relievo_registry* registry, const relievo_trace_desc* desc,
                                      relievo_tracer** tracer, relievo_error* error);
 void relievo_tracer_free(relievo_tracer* tracer);

@@ -1,6 +1,6 @@
 /* A C99 program that uses the SDK as an engine would: compiles a program, has a manifest compiled into an archive, reads
- * it, edits a technique while a reloader watches it, bakes a map, traces rays. Arguments: a manifest, one with errors, a folder to
- * write into (with an empty folder techniques/edited), a folder with a technique called `broken`. */
+ * it, edits a technique while a reloader watches it, bakes a map, traces rays. Arguments: a manifest, one with errors, a
+ * folder to write into (with an empty folder techniques/edited), a folder with a technique called `broken`. */
 #include <relievo.h>
 
 #include <math.h>

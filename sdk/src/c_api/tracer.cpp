@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <type_traits>
 
 #include "c_api/boundary.hpp"

@@ -47,16 +47,16 @@ Hit relievo_hit_at(Ray ray, int status, float t) { return Hit(status, t, relievo
 
 // Exponent bits all set: NaN or infinity. A bit test survives compilers that assume neither occurs.
 bool relievo_is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
-bool relievo_is_finite(vec3 x) { return relievo_is_finite(x.x) && relievo_is_finite(x.y) && relievo_is_finite(x.z); }
+bool relievo_is_finite(vec3 x) { return all(notEqual(floatBitsToUint(x) & 0x7f800000u, uvec3(0x7f800000u))); }
+bool relievo_is_finite(vec4 x) { return all(notEqual(floatBitsToUint(x) & 0x7f800000u, uvec4(0x7f800000u))); }
 
 bool relievo_is_valid(Ray ray) {
-  return relievo_is_finite(ray.origin) && relievo_is_finite(ray.direction) && relievo_is_finite(ray.t_max) &&
-         ray.direction != vec3(0.0) && ray.t_max >= 0.0;
+  return all(bvec4(relievo_is_finite(ray.origin), relievo_is_finite(vec4(ray.direction, ray.t_max)),
+                   ray.direction != vec3(0.0), ray.t_max >= 0.0));
 }
 
 // Nothing that is not finite leaves a stage: such a result becomes a miss at the ray's origin.
 Hit relievo_sanitized(Ray ray, Hit hit) {
-  if (relievo_is_finite(hit.t) && relievo_is_finite(hit.point)) return hit;
-  vec3 origin = relievo_is_finite(ray.origin) ? ray.origin : vec3(0.0);
-  return Hit(RELIEVO_MISS, 0.0, origin);
+  if (relievo_is_finite(vec4(hit.point, hit.t))) return hit;
+  return Hit(RELIEVO_MISS, 0.0, relievo_is_finite(ray.origin) ? ray.origin : vec3(0.0));
 }

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "compile/complexity.hpp"
+#include "compile/constant_parameters.hpp"
 #include "compile/diagnostics.hpp"
 
 namespace relievo {
@@ -60,7 +61,11 @@ class ParsedShader {
     shader_.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
   }
 
-  bool parse() { return shader_.parse(GetDefaultResources(), 450, false, kMessages); }
+  bool parse() {
+    if (!shader_.parse(GetDefaultResources(), 450, false, kMessages)) return false;
+    make_read_parameters_constant(*shader_.getIntermediate());
+    return true;
+  }
   glslang::TShader& shader() { return shader_; }
 
  private:

@@ -62,7 +62,7 @@ bool prism_eye(vec3 eye, Corner corners[4], out vec4 distances) {
   if (volume == 0.0) return false;
   distances.yzw = vec3(prism_volume(e, c, d), prism_volume(b, e, d), prism_volume(b, c, e)) / volume;
   distances.x = prism_volume(b - e, c - e, d - e) / volume;
-  return relievo_is_finite(distances.x) && relievo_is_finite(distances.yzw);
+  return relievo_is_finite(distances);
 }
 
 void prism_emit(Corner corners[4], int vertex, vec4 eye_distances, vec2 tile, int leaves_by_base) {

@@ -1,6 +1,7 @@
 #include "creation.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "formats.hpp"
 
@@ -19,17 +20,27 @@ VkImageViewType view_type(const Texture& texture) {
   return is_3d(texture) ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D;
 }
 
-template <class Made>
-void make_buffer(const Device& device, Made& made, VkDeviceSize size, VkBufferUsageFlags usage,
-                 VkMemoryPropertyFlags needed, VkMemoryPropertyFlags preferred, std::string_view what) {
+constexpr VkMemoryPropertyFlags never = ~VkMemoryPropertyFlags{0};
+
+/// In memory of the first type that is as wished; the host sees it if its memory is all that `mapped` names.
+DeviceBuffer make_buffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage,
+                         std::span<const VkMemoryPropertyFlags> wishes, VkMemoryPropertyFlags mapped,
+                         std::string_view what) {
+  DeviceBuffer made;
   // Whole words, so that filling with zero reaches the last byte.
   const VkBufferCreateInfo info = {
       .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = (size + 3) / 4 * 4, .usage = usage};
   made.buffer = device.create(device.vk.vkCreateBuffer, device.vk.vkDestroyBuffer, info, what);
   VkMemoryRequirements requirements = {};
   device.vk.vkGetBufferMemoryRequirements(device.handle(), made.buffer.get(), &requirements);
-  made.memory = device.allocate(requirements, needed, preferred, what);
+  const std::uint32_t type = device.memory_type(requirements, wishes, what);
+  made.memory = device.allocate(requirements, type, what);
   check(device.vk.vkBindBufferMemory(device.handle(), made.buffer.get(), made.memory.get(), 0), what);
+  if (!has_all(device.traits().memory.memoryTypes[type].propertyFlags, mapped)) return made;
+  void* bytes = nullptr;
+  check(device.vk.vkMapMemory(device.handle(), made.memory.get(), 0, VK_WHOLE_SIZE, 0, &bytes), "mapping memory");
+  made.bytes = static_cast<std::byte*>(bytes);
+  return made;
 }
 
 VkSamplerAddressMode address_mode(TexelAddress address) {
@@ -119,21 +130,18 @@ DeviceBuffer create_buffer(const Device& device, const Buffer& buffer) {
   constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                                        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                        VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
-  DeviceBuffer made;
-  make_buffer(device, made, buffer.size, usage, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
-              fmt::format("creating buffer \"{}\" of {} bytes", buffer.name, buffer.size));
-  return made;
+  constexpr VkMemoryPropertyFlags wishes[] = {shared_with_host, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
+  const bool may_share = device.may_share_memory();
+  return make_buffer(device, buffer.size, usage, std::span(wishes).subspan(may_share ? 0 : 1),
+                     may_share ? shared_with_host : never,
+                     fmt::format("creating buffer \"{}\" of {} bytes", buffer.name, buffer.size));
 }
 
-HostBuffer create_host_buffer(const Device& device, std::size_t size, VkMemoryPropertyFlags preferred) {
+DeviceBuffer create_host_buffer(const Device& device, std::size_t size, VkMemoryPropertyFlags preferred) {
   constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-  constexpr VkMemoryPropertyFlags needed = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  HostBuffer made;
-  make_buffer(device, made, size, usage, needed, preferred, fmt::format("creating a buffer of {} bytes to copy", size));
-  void* bytes = nullptr;
-  check(device.vk.vkMapMemory(device.handle(), made.memory.get(), 0, VK_WHOLE_SIZE, 0, &bytes), "mapping memory");
-  made.bytes = static_cast<std::byte*>(bytes);
-  return made;
+  const VkMemoryPropertyFlags wishes[] = {seen_by_host | preferred, seen_by_host};
+  return make_buffer(device, size, usage, wishes, seen_by_host,
+                     fmt::format("creating a buffer of {} bytes to copy", size));
 }
 
 std::vector<VkImageUsageFlags> texture_usages(const Job& job) {
@@ -162,7 +170,8 @@ DeviceImage create_image(const Device& device, const Texture& texture, VkImageUs
   made.image = device.create(device.vk.vkCreateImage, device.vk.vkDestroyImage, info, what);
   VkMemoryRequirements requirements = {};
   device.vk.vkGetImageMemoryRequirements(device.handle(), made.image.get(), &requirements);
-  made.memory = device.allocate(requirements, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, what);
+  constexpr VkMemoryPropertyFlags wishes[] = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
+  made.memory = device.allocate(requirements, device.memory_type(requirements, wishes, what), what);
   check(device.vk.vkBindImageMemory(device.handle(), made.image.get(), made.memory.get(), 0), what);
   if (usage == transfers) return made;  // no command binds it, and a view of it would not be valid
   made.all_levels = create_view(device, texture, made.image.get(), texture.levels);

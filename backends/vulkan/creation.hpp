@@ -7,8 +7,10 @@
 
 namespace relievo::vulkan {
 
+/// Where host and device share their memory (integrated and software devices), the host sees the buffer.
 DeviceBuffer create_buffer(const Device& device, const Buffer& buffer);
-HostBuffer create_host_buffer(const Device& device, std::size_t size, VkMemoryPropertyFlags preferred);
+/// A buffer to copy from or to, which the host sees.
+DeviceBuffer create_host_buffer(const Device& device, std::size_t size, VkMemoryPropertyFlags preferred);
 
 /// How the job's commands use each texture.
 std::vector<VkImageUsageFlags> texture_usages(const Job& job);

@@ -43,7 +43,9 @@ VkDevice create_device(const DeviceTraits& traits) {
 }  // namespace
 
 Device::Device(const BackendOptions& options)
-    : instance_(options.validation ? &messages_ : nullptr), traits_(choose_device(instance_, options.device)) {
+    : instance_(options.validation ? &messages_ : nullptr),
+      traits_(choose_device(instance_, options.device)),
+      may_share_memory_(!options.copies_always) {
   const auto lock = lock_loader();
   get_format_properties_ = vkGetPhysicalDeviceFormatProperties;
   get_image_format_properties_ = vkGetPhysicalDeviceImageFormatProperties;
@@ -56,16 +58,19 @@ Device::~Device() {
   vk.vkDestroyDevice(device_, nullptr);
 }
 
-Unique<VkDeviceMemory> Device::allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags needed,
-                                        VkMemoryPropertyFlags preferred, std::string_view what) const {
-  for (const VkMemoryPropertyFlags flags : {needed | preferred, needed}) {
+Unique<VkDeviceMemory> Device::allocate(const VkMemoryRequirements& requirements, std::uint32_t type,
+                                        std::string_view what) const {
+  const VkMemoryAllocateInfo info = {
+      .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = requirements.size, .memoryTypeIndex = type};
+  return create(vk.vkAllocateMemory, vk.vkFreeMemory, info, what);
+}
+
+std::uint32_t Device::memory_type(const VkMemoryRequirements& requirements,
+                                  std::span<const VkMemoryPropertyFlags> wishes, std::string_view what) const {
+  for (const VkMemoryPropertyFlags flags : wishes) {
     for (std::uint32_t type = 0; type < traits_.memory.memoryTypeCount; ++type) {
       const bool allowed = (requirements.memoryTypeBits >> type & 1u) != 0;
-      if (!allowed || (traits_.memory.memoryTypes[type].propertyFlags & flags) != flags) continue;
-      const VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                         .allocationSize = requirements.size,
-                                         .memoryTypeIndex = type};
-      return create(vk.vkAllocateMemory, vk.vkFreeMemory, info, what);
+      if (allowed && has_all(traits_.memory.memoryTypes[type].propertyFlags, flags)) return type;
     }
   }
   refuse(ErrorCode::unsupported, "backend.memory", "{} fails: the device has no memory of a suitable type", what);

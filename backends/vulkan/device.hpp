@@ -11,6 +11,16 @@
 
 namespace relievo::vulkan {
 
+constexpr VkMemoryPropertyFlags seen_by_host =
+    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+/// Memory that the host reads as fast as its own; not what it sees of a graphics card's through a bus.
+constexpr VkMemoryPropertyFlags shared_with_host =
+    seen_by_host | VK_MEMORY_PROPERTY_HOST_CACHED_BIT | VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+
+constexpr bool has_all(VkMemoryPropertyFlags flags, VkMemoryPropertyFlags wanted) {
+  return (flags & wanted) == wanted;
+}
+
 class Device {
  public:
   explicit Device(const BackendOptions& options);
@@ -23,6 +33,7 @@ class Device {
 
   VkDevice handle() const { return device_; }
   const DeviceTraits& traits() const { return traits_; }
+  bool may_share_memory() const { return may_share_memory_; }
   const VkPhysicalDeviceLimits& limits() const { return traits_.properties.limits; }
   Messages& messages() { return messages_; }
 
@@ -41,9 +52,11 @@ class Device {
     return Unique<Handle>(handle, Destroy<Handle>{device_, destroy});
   }
 
-  /// Memory of a type that has all of `needed`, and of `preferred` if one has.
-  Unique<VkDeviceMemory> allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags needed,
-                                  VkMemoryPropertyFlags preferred, std::string_view what) const;
+  /// The first type of memory that has all flags of the first wish that can be granted.
+  std::uint32_t memory_type(const VkMemoryRequirements& requirements, std::span<const VkMemoryPropertyFlags> wishes,
+                            std::string_view what) const;
+  Unique<VkDeviceMemory> allocate(const VkMemoryRequirements& requirements, std::uint32_t type,
+                                  std::string_view what) const;
 
   VkFormatFeatureFlags format_features(VkFormat format) const;
   /// Throws "backend.format" when the device cannot make such an image.
@@ -56,6 +69,7 @@ class Device {
   Messages messages_;
   Instance instance_;
   DeviceTraits traits_;
+  bool may_share_memory_;
   PFN_vkGetPhysicalDeviceFormatProperties get_format_properties_ = nullptr;
   PFN_vkGetPhysicalDeviceImageFormatProperties get_image_format_properties_ = nullptr;
   VkDevice device_ = VK_NULL_HANDLE;

@@ -24,6 +24,9 @@ class Execution {
         timestamps_(device, job.commands.size()) {}
 
   JobResult run() {
+    // Apart from the rest, so that what was only there to be copied is gone when the work begins.
+    device_.run([this](VkCommandBuffer commands) { resources_.upload(commands); });
+    resources_.end_upload();
     device_.run([this](VkCommandBuffer commands) { record_all(commands); });
     return {resources_.read_backs(), timestamps_.seconds(), {}};
   }
@@ -31,7 +34,6 @@ class Execution {
  private:
   void record_all(VkCommandBuffer commands) {
     timestamps_.reset(commands);
-    resources_.upload(commands);
     for (std::size_t i = 0; i < job_.commands.size(); ++i) {
       resources_.barrier(commands, std::visit([this](const auto& c) { return transitions(c); }, job_.commands[i]));
       timestamps_.begin(commands, i);

@@ -1,6 +1,7 @@
 #include "resources.hpp"
 
 #include <cstring>
+#include <utility>
 
 #include "creation.hpp"
 #include "formats.hpp"
@@ -68,6 +69,10 @@ void Resources::upload(VkCommandBuffer commands) {
 void Resources::upload_buffer(VkCommandBuffer commands, std::size_t index) {
   const Buffer& source = job_.buffers[index];
   const VkBuffer target = buffers_[index].buffer.get();
+  if (std::byte* bytes = buffers_[index].bytes) {
+    source.data.empty() ? std::memset(bytes, 0, source.size) : std::memcpy(bytes, source.data.data(), source.size);
+    return;
+  }
   if (source.data.empty()) {
     device_.vk.vkCmdFillBuffer(commands, target, 0, VK_WHOLE_SIZE, 0);
     return;
@@ -120,7 +125,12 @@ void Resources::download(VkCommandBuffer commands) {
       download_texture(commands, read_back);
       continue;
     }
-    const VkBufferCopy copy = {.size = job_.buffers[static_cast<std::size_t>(read_back.index)].size};
+    const auto index = static_cast<std::size_t>(read_back.index);
+    if (buffers_[index].bytes != nullptr) {
+      downloads_.emplace_back();
+      continue;
+    }
+    const VkBufferCopy copy = {.size = job_.buffers[index].size};
     downloads_.push_back(create_host_buffer(device_, copy.size, VK_MEMORY_PROPERTY_HOST_CACHED_BIT));
     device_.vk.vkCmdCopyBuffer(commands, buffer(read_back.index), downloads_.back().buffer.get(), 1, &copy);
   }
@@ -137,19 +147,21 @@ void Resources::download_texture(VkCommandBuffer commands, const ReadBack& read_
                                     &copy);
 }
 
-std::vector<std::vector<std::byte>> Resources::read_backs() const {
+std::vector<std::vector<std::byte>> Resources::read_backs() {
+  images_.clear();
   std::vector<std::vector<std::byte>> results;
   for (std::size_t i = 0; i < job_.read_backs.size(); ++i) {
     const ReadBack& read_back = job_.read_backs[i];
     const auto index = static_cast<std::size_t>(read_back.index);
-    const std::byte* bytes = downloads_[i].bytes;
+    const DeviceBuffer download = std::exchange(downloads_[i], {});
     if (read_back.source == ReadBack::Source::buffer) {
+      const std::byte* bytes = download.bytes != nullptr ? download.bytes : buffers_[index].bytes;
       results.emplace_back(bytes, bytes + job_.buffers[index].size);
       continue;
     }
     const Texture& texture = job_.textures[index];
     results.emplace_back(level_size(texture, read_back.level));
-    unpack_texels(texture.format, bytes, results.back());
+    unpack_texels(texture.format, download.bytes, results.back());
   }
   return results;
 }

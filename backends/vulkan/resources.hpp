@@ -13,13 +13,7 @@ namespace relievo::vulkan {
 struct DeviceBuffer {
   Unique<VkDeviceMemory> memory;
   Unique<VkBuffer> buffer;
-};
-
-/// A buffer that the host sees; `bytes` stays mapped as long as the buffer lives.
-struct HostBuffer {
-  Unique<VkDeviceMemory> memory;
-  Unique<VkBuffer> buffer;
-  std::byte* bytes = nullptr;
+  std::byte* bytes = nullptr;  ///< as the host sees it, if it does; mapped as long as the buffer lives
 };
 
 struct DeviceImage {
@@ -39,12 +33,14 @@ class Resources {
   VkBuffer buffer(int index) const { return buffers_[static_cast<std::size_t>(index)].buffer.get(); }
   DeviceImage& image(int index) { return images_[static_cast<std::size_t>(index)]; }
 
-  /// Records the copies of all contents; what has none becomes zero, so that every run starts alike.
+  /// Makes or records the copies of all contents; what has none becomes zero, so that every run starts alike.
   void upload(VkCommandBuffer commands);
+  /// Frees what these copies needed; they have run.
+  void end_upload() { uploads_.clear(); }
   /// Records the copies of everything that is read back.
   void download(VkCommandBuffer commands);
-  /// What was read back, once the commands have run.
-  std::vector<std::vector<std::byte>> read_backs() const;
+  /// What was read back, once the commands have run. Frees the rest: results may be large.
+  std::vector<std::vector<std::byte>> read_backs();
 
   /// Waits for everything before, and brings the image of texture `index` into `layout`.
   struct Transition {
@@ -64,7 +60,8 @@ class Resources {
   const Job& job_;
   std::vector<DeviceBuffer> buffers_;
   std::vector<DeviceImage> images_;
-  std::vector<HostBuffer> uploads_, downloads_;
+  std::vector<DeviceBuffer> uploads_;
+  std::vector<DeviceBuffer> downloads_;  ///< one a read-back; empty where the host sees the buffer itself
 };
 
 }  // namespace relievo::vulkan

@@ -19,6 +19,11 @@ BackendInfo blank_info() {
   return info;
 }
 
+bool has_memory(const VkPhysicalDeviceMemoryProperties& memory, VkMemoryPropertyFlags wanted) {
+  return std::any_of(memory.memoryTypes, memory.memoryTypes + memory.memoryTypeCount,
+                     [wanted](const VkMemoryType& type) { return has_all(type.propertyFlags, wanted); });
+}
+
 BackendInfo info_of(const DeviceTraits& device) {
   BackendInfo info = blank_info();
   const std::uint32_t version = device.properties.apiVersion;
@@ -32,6 +37,7 @@ BackendInfo info_of(const DeviceTraits& device) {
   if (device.features.tessellationShader) info.features.insert("tessellation");
   if (device.timestamp_bits > 0) info.features.insert("timestamps");
   if (device.filters_float32) info.features.insert("linear_float32");
+  if (has_memory(device.memory, shared_with_host)) info.features.insert("shared_memory");
   if (has_validation_layer()) info.features.insert("validation");
   info.max_storage_buffer = device.properties.limits.maxStorageBufferRange;
   return info;

@@ -49,8 +49,8 @@ Ogre::TexturePtr make_normal_height_map(const relievo::MapSet& maps, float facto
   const std::size_t count = heights.texels.size();
   std::vector<std::uint8_t> texels(count * 4);
   for (std::size_t i = 0; i < count; ++i) {
-    const float* n = &normals.texels[3 * i];
-    const Ogre::Vector3 normal = Ogre::Vector3(n[0] * factor, n[1] * factor, n[2]).normalisedCopy();
+    const float x = normals.texels[3 * i], y = normals.texels[3 * i + 1], z = normals.texels[3 * i + 2];
+    const Ogre::Vector3 normal = Ogre::Vector3(x * factor, y * factor, z).normalisedCopy();
     for (std::size_t c = 0; c < 3; ++c) texels[4 * i + c] = to_byte(0.5f + 0.5f * normal[c]);
     texels[4 * i + 3] = to_byte(heights.texels[i]);
   }

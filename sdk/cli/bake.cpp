@@ -18,9 +18,10 @@ struct BakeOptions {
 
 /// Level 0 or the first layer as a picture; signed channels become [0,1], as normal maps are shown.
 Status write_picture(const MapData& map, const std::string& path) {
-  Image image{map.width, map.height, map.channels, map.texels};
+  Image image{map.width, map.height, map.channels, map.texels.floats()};
+  const bool is_signed = std::any_of(image.pixels.begin(), image.pixels.end(), [](float t) { return t < 0; });
   image.pixels.resize(map_level(map, 1).offset * static_cast<std::size_t>(map.channels));
-  if (std::any_of(map.texels.begin(), map.texels.end(), [](float t) { return t < 0; })) {
+  if (is_signed) {
     for (float& value : image.pixels) value = 0.5f + 0.5f * value;
   }
   return write_png(path, image);
@@ -82,7 +83,7 @@ Status run_bake(const Context& context, const BakeOptions& options) {
   if (!height) return tl::unexpected(height.error());
   Result<std::unique_ptr<Backend>> backend = open(options.backend, false);
   if (!backend) return tl::unexpected(backend.error());
-  MapSet maps = map_set(*height);
+  MapSet maps = map_set(*std::move(height));
   const Result<Cost> cost = bake(**backend, *registry, options.map, maps, settings->values);
   if (!cost) return tl::unexpected(cost.error());
   const MapData& map = maps.at(options.map);

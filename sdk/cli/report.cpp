@@ -231,13 +231,14 @@ void add_report(CLI::App& app, Context& context) {
   auto options = std::make_shared<ReportOptions>();
   CLI::App* command = add_command(app, context, "report", "Measure everything and show it on one page",
                                   [&context, options] { return run_report(context, *options); });
+  // The demo passes what it is given after what it has itself: the last one wins.
   command->add_option("--techniques", options->techniques, "a,b,… or all")->capture_default_str();
   command->add_option("--scene", options->scenes, "Scene files: pictures of every drawing stage");
   command->add_option(
       "--height", options->heights,
       "Height files, each with an optional :scale; the first is judged ray by ray, all are swept. A file that is not "
       "there is left out");
-  command->add_option("--address", options->address, "Of the height files")->capture_default_str();
+  command->add_option("--address", options->address, "Of the height files")->take_last()->capture_default_str();
   command->add_option("--backends", options->backends)->delimiter(',')->capture_default_str();
   command->add_option("--ray-image", options->ray_image, "Rays a side of the ray image")
       ->check(CLI::Range(1, 8192))
@@ -257,7 +258,8 @@ void add_report(CLI::App& app, Context& context) {
   command
       ->add_option("-o,--output", options->output,
                    "Folder for index.html, report.json, report.csv, pictures.csv and pictures/")
-      ->required();
+      ->required()
+      ->take_last();
   command->add_flag("--quick,!--full", options->quick, "Fewer counts, angles and rays, no height maps made by rule")
       ->take_last();
 }

@@ -86,12 +86,12 @@ TEST(LargeBake, EveryMapHasTheSameBytesInSeveralBuffers) {
 }
 
 /// Bakes a map from its inputs in `whole` with room for so many of its layers in a buffer.
-std::vector<float> bake_apart(SmallBuffers& small, const Registry& from, const std::string& map, const MapSet& whole) {
+MapTexels bake_apart(SmallBuffers& small, const Registry& from, const std::string& map, const MapSet& whole) {
   MapSet maps = whole;
   maps.erase(map);
   const Status status = bake_map(small, from, map, maps);
   EXPECT_TRUE(status) << (status ? "" : format(status.error()));
-  return status ? maps.at(map).texels : std::vector<float>();
+  return status ? maps.at(map).texels : MapTexels();
 }
 
 std::size_t layer_bytes(const MapData& map) {

@@ -77,7 +77,8 @@ TEST(Layered, TheSameFiguresCatchAMapThatPassesOverHits) {
     const std::string name = technique == "pyramid" ? "max_pyramid" : technique;
     MapSet maps = map_set(map);
     maps[name] = baked(name, map);
-    for (float& value : maps[name].texels) value = std::max(value - 0.1f, 0.0f);
+    MapTexels& texels = maps[name].texels;
+    for (std::size_t i = 0; i < texels.size(); ++i) texels.set(i, std::max(texels[i] - 0.1f, 0.0f));
     const auto hits = trace_with(map, rays, fine_request(technique), maps);
     EXPECT_GT(compare_hits(truth, hits, map.width, map.height).wrong_percent(), 5) << technique;
   }

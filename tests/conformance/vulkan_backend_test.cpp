@@ -81,6 +81,27 @@ TEST(VulkanOpen, OpensAgainAfterClosing) {
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(open_vulkan({})->execute(squares_job()));
 }
 
+/// A graphics card's memory is copied to and from, even if this machine's device shares the host's.
+TEST(VulkanBuffers, CopiesHoldWhatSharedMemoryHolds) {
+  BackendOptions options;
+  options.validation = true;
+  options.copies_always = true;
+  const auto copying = open_vulkan(options);
+  for (const std::size_t size : {16, 4000}) {
+    Job job = squares_job();
+    job.buffers = {make_buffer("empty", size), make_buffer("full", std::vector<std::uint32_t>(size / 4, 7))};
+    job.commands = {Dispatch{0, {{0, 0, 0}}, {1, 1, 1}}, Dispatch{0, {{0, 0, 1}}, {1, 1, 1}}};
+    job.read_backs = {{ReadBack::Source::buffer, 1, 0}, {ReadBack::Source::buffer, 0, 0}};
+    const Result<JobResult> copied = copying->execute(job);
+    ASSERT_TRUE(copied) << copied.error().message;
+    EXPECT_THAT(copied->messages, IsEmpty());
+    EXPECT_EQ(copied->read_backs, run(job).read_backs);
+    const auto values = from_bytes<std::uint32_t>(copied->read_backs[0]);
+    ASSERT_EQ(values.size(), size / 4);
+    EXPECT_THAT(std::vector(values.begin(), values.begin() + 4), ElementsAre(7, 8, 11, 16));
+  }
+}
+
 /// Prints why Vulkan is not available and how opening it fails, then leaves.
 [[noreturn]] void report_and_exit(const BackendOptions& options = {}) {
   for (const BackendInfo& info : list_backends()) {

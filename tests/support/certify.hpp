@@ -42,6 +42,12 @@ inline std::size_t element(const MapData& map, int x, int y, int channel = 0, in
   return texel * static_cast<std::size_t>(map.channels) + static_cast<std::size_t>(channel);
 }
 
+/// Moves every value `by` elements towards the front, round the end.
+inline void rotate_texels(MapData& map, std::size_t by) {
+  const std::vector<float> before = map.texels.floats();
+  for (std::size_t i = 0; i < before.size(); ++i) map.texels.set(i, before[(i + by) % before.size()]);
+}
+
 /// Every value to the nearest multiple of 1/255: what a careless quantisation does to a promise.
 inline MapData rounded_to_nearest(MapData map) {
   const std::vector<Rounding> nearest(static_cast<std::size_t>(map.channels), Rounding::nearest);

@@ -71,8 +71,8 @@ inline Job make_compute_job(ShaderProgram program, std::size_t size) {
 
 /// The Vulkan backend with validation; opened once for all tests.
 inline Backend& vulkan() {
-  static const Result<std::unique_ptr<Backend>> backend =
-      open_backend("vulkan", {.validation = true, .device = {}, .pipeline_cache = {}, .fail_at_call = -1});
+  static const Result<std::unique_ptr<Backend>> backend = open_backend(
+      "vulkan", {.validation = true, .device = {}, .pipeline_cache = {}, .copies_always = false, .fail_at_call = -1});
   if (!backend) throw std::runtime_error(backend.error().message);
   return **backend;
 }

@@ -86,7 +86,7 @@ TEST(CertifyCone, AnEdgeBetweenTexelsViolatesClassicCones) {
   map.texels[8 * 16 + 10] = 0.5f, map.texels[9 * 16 + 10] = 0.56f;
   MapData cones = baked(map, "cone", {});
   for (std::size_t i = 0; i < cones.texels.size(); ++i)
-    if (i != 8 * 16 + 8) cones.texels[i] = 0;  // all but the cone on (8, 8)
+    if (i != 8 * 16 + 8) cones.texels.set(i, 0);  // all but the cone on (8, 8)
   const Certificate certificate = certified(map, cones);
   EXPECT_EQ(certificate.violations, 1U);
   // Half way the edge is 0.53 high at a distance of sqrt(4.25); the second tower allows 0.56 per sqrt(5).
@@ -125,7 +125,7 @@ TEST(CertifyCone, AWiderConeIsCaught) {
   const HeightMap map = spike_map(13, 7);
   MapData cones = baked(map, "cone", {});
   ASSERT_EQ(certified(map, cones).violations, 0U);
-  cones.texels[2 * 13 + 4] *= 1.01f;
+  cones.texels.set(2 * 13 + 4, cones.texels[2 * 13 + 4] * 1.01f);
   const Certificate certificate = certified(map, cones);
   EXPECT_EQ(certificate.violations, 1U);
   EXPECT_EQ(std::pair(certificate.x, certificate.y), std::pair(4, 2));
@@ -136,7 +136,7 @@ TEST(CertifyCone, AWiderConeIsCaught) {
 TEST(CertifyCone, ANegativeConeIsCaught) {
   const HeightMap map = constant_map(4, 4, 0.5);
   MapData cones = baked(map, "cone", {});
-  cones.texels[5] = -0.5f;
+  cones.texels.set(5, -0.5f);
   EXPECT_EQ(certified(map, cones).violations, 1U);
 }
 

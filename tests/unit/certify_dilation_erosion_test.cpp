@@ -32,7 +32,8 @@ TEST(CertifyDilationErosion, ATexelThatBreaksThePromiseIsNamed) {
   EXPECT_EQ(kept.checked, 7U * 13U);
   for (const int channel : {0, 1}) {
     MapData faulty = good;
-    faulty.texels[element(faulty, 5, 11, channel)] += channel == 0 ? 1e-6f : -1e-6f;
+    const std::size_t changed = element(faulty, 5, 11, channel);
+    faulty.texels.set(changed, good.texels[changed] + (channel == 0 ? 1e-6f : -1e-6f));
     const Certificate broken = certified(map, faulty, radius_2);
     EXPECT_EQ(broken.violations, 1U);
     EXPECT_EQ(std::pair(broken.x, broken.y), std::pair(5, 11));
@@ -48,7 +49,7 @@ TEST(CertifyDilationErosion, FaultsOfAWholeMapAreFound) {
   EXPECT_GT(certified(map, baked(name, with_address(map, AddressMode::clamp), radius_2), radius_2).violations, 50U)
       << "baked for another border";
   MapData shifted = good;
-  std::rotate(shifted.texels.begin(), shifted.texels.begin() + 2, shifted.texels.end());
+  rotate_texels(shifted, 2);
   EXPECT_GT(certified(map, shifted, radius_2).violations, 500U);
 }
 

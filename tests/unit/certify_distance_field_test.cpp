@@ -68,7 +68,7 @@ TEST(CertifyDistanceField, AnyDistanceThatIsTooLongIsCaught) {
   const MapData good = baked(map, "distance_field", values);
   for (std::size_t i = 0; i < good.texels.size(); ++i) {
     MapData faulty = good;
-    faulty.texels[i] += 0.2f;  // a texel is 1/26 wide: boxes of cells leave less
+    faulty.texels.set(i, good.texels[i] + 0.2f);  // a texel is 1/26 wide: boxes of cells leave less
     const Certificate certificate = certified_field(map, faulty, values);
     ASSERT_EQ(certificate.violations, 1U);
     EXPECT_EQ(index_of(good, certificate.x, certificate.y, certificate.layer), i);
@@ -83,12 +83,12 @@ TEST(CertifyDistanceField, TheCertifierKnowsTheDistanceToASlope) {
   MapData field = baked(map, "distance_field", values);
   const double drop = (48 + 0.5) / 64 - 20 / 63.0, rise = 64.0 / 63;  // H per longer side
   const double distance = drop / std::sqrt(1 + rise * rise);
-  float& stored = field.texels[index_of(field, 20, 4, 48)];
-  EXPECT_LE(stored, distance);
-  EXPECT_GT(stored, distance - 0.02) << "a cell rises by 1/63";
-  stored = static_cast<float>(distance - 1e-5);
+  const std::size_t stored = index_of(field, 20, 4, 48);
+  EXPECT_LE(field.texels[stored], distance);
+  EXPECT_GT(field.texels[stored], distance - 0.02) << "a cell rises by 1/63";
+  field.texels.set(stored, static_cast<float>(distance - 1e-5));
   EXPECT_EQ(certified_field(map, field, values).violations, 0U);
-  stored = static_cast<float>(distance + 1e-4);
+  field.texels.set(stored, static_cast<float>(distance + 1e-4));
   EXPECT_EQ(certified_field(map, field, values).violations, 1U);
 }
 

@@ -38,8 +38,8 @@ TEST(CertifyMinMaxPyramid, ATexelThatBreaksThePromiseIsNamed) {
   EXPECT_EQ(kept.checked, 7U * 13U * 5U) << "every cell in each of the levels of 8 x 16";
   for (const int channel : {0, 1}) {
     MapData faulty = good;
-    float& value = faulty.texels[element(faulty, 1, 2, channel, 1)];
-    value += channel == 0 ? 1e-6f : -1e-6f;
+    const std::size_t changed = element(faulty, 1, 2, channel, 1);
+    faulty.texels.set(changed, good.texels[changed] + (channel == 0 ? 1e-6f : -1e-6f));
     const Certificate broken = certified(map, faulty);
     EXPECT_GE(broken.violations, 1U);
     EXPECT_LE(broken.violations, 4U) << "no more cells have the extreme for a corner";
@@ -55,7 +55,7 @@ TEST(CertifyMinMaxPyramid, FaultsOfAWholeMapAreFound) {
   EXPECT_GT(certified(white_noise_map(7, 13, 2), good).violations, 50U) << "another height map's";
   EXPECT_GT(certified(map, baked(name, with_address(map, AddressMode::clamp))).violations, 5U) << "its borders";
   MapData swapped = good;
-  for (std::size_t i = 0; i < swapped.texels.size(); i += 2) std::swap(swapped.texels[i], swapped.texels[i + 1]);
+  for (std::size_t i = 0; i < swapped.texels.size(); ++i) swapped.texels.set(i, good.texels[i ^ 1]);
   EXPECT_GT(certified(map, swapped).violations, 300U);
 }
 
@@ -63,7 +63,7 @@ TEST(CertifyMinMaxPyramid, MapsOfAnotherShapeAndNumbersThatAreNoneAreRefused) {
   const HeightMap map = white_noise_map(7, 13);
   MapData faulty = baked(name, map);
   EXPECT_EQ(certify(white_noise_map(7, 17), faulty).error().id, "certify.shape");
-  faulty.texels[element(faulty, 1, 1)] = std::numeric_limits<float>::quiet_NaN();
+  faulty.texels.set(element(faulty, 1, 1), std::numeric_limits<float>::quiet_NaN());
   EXPECT_EQ(certify(map, faulty).error().id, "certify.non-finite");
 }
 

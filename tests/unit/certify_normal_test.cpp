@@ -31,8 +31,10 @@ TEST(CertifyNormal, ANormalThatDiffersIsNamed) {
   const MapData good = baked(name, map);
   EXPECT_EQ(certified(map, good).violations, 0U);
   MapData longer = good, turned = good;
-  for (int c = 0; c < 3; ++c) longer.texels[element(longer, 3, 4, c)] *= 1.00001f;
-  std::swap(turned.texels[element(turned, 3, 4, 0)], turned.texels[element(turned, 3, 4, 1)]);
+  const std::size_t x = element(good, 3, 4, 0);
+  for (std::size_t i = x; i < x + 3; ++i) longer.texels.set(i, good.texels[i] * 1.00001f);
+  turned.texels.set(x, good.texels[x + 1]);
+  turned.texels.set(x + 1, good.texels[x]);
   for (const MapData& faulty : {longer, turned}) {
     const Certificate broken = certified(map, faulty);
     EXPECT_EQ(broken.violations, 1U);
@@ -46,7 +48,7 @@ TEST(CertifyNormal, FaultsOfAWholeMapAreFound) {
   EXPECT_EQ(certified(map, good, {{"normal.scale", 0.2}}).violations, 7U * 13U) << "twice as high as it was baked";
   EXPECT_GT(certified(map, baked(name, with_address(map, AddressMode::clamp))).violations, 20U) << "its borders";
   MapData inverted = good;
-  for (std::size_t i = 0; i < inverted.texels.size(); i += 3) inverted.texels[i] = -inverted.texels[i];
+  for (std::size_t i = 0; i < inverted.texels.size(); i += 3) inverted.texels.set(i, -good.texels[i]);
   EXPECT_GT(certified(map, inverted).violations, 80U);
   const auto refused = certify(map, good, certify_options({{"normal.scale", -1}}));
   ASSERT_FALSE(refused);

@@ -41,7 +41,8 @@ TEST(CertifyPyramid3d, ATexelThatBreaksThePromiseIsNamed) {
   const MapData good = baked(name, map);
   EXPECT_EQ(certified(map, good).violations, 0U);
   MapData faulty = good;
-  faulty.texels[element(faulty, 5, 1, 0, 0, 1)] -= 1e-6f;  // node (1, 1) of level 2
+  const std::size_t node = element(faulty, 5, 1, 0, 0, 1);  // (1, 1) of level 2
+  faulty.texels.set(node, good.texels[node] - 1e-6f);
   const Certificate broken = certified(map, faulty);
   EXPECT_GE(broken.violations, 1U);
   EXPECT_LE(broken.violations, 4U) << "the cells of one corner";
@@ -54,7 +55,7 @@ TEST(CertifyPyramid3d, FaultsOfAWholeMapAreFound) {
   EXPECT_GT(certified(map, rounded_to_nearest(good)).violations, 50U);
   EXPECT_GT(certified(white_noise_map(7, 13, 2), good).violations, 50U) << "another height map's";
   MapData swapped = good;
-  std::rotate(swapped.texels.begin(), swapped.texels.begin() + 7 * 13, swapped.texels.end());
+  rotate_texels(swapped, 7 * 13);
   EXPECT_GT(certified(map, swapped).violations, 50U) << "its layers in the other order";
   MapData flat = good;
   flat.dimension = MapDimension::flat;

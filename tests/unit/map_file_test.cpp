@@ -29,8 +29,10 @@ MapData random_map(const Shape& s, std::uint64_t seed = 1) {
   map.address = AddressMode::mirror;
   Random random(seed);
   const std::size_t count = texel_count(map) * static_cast<std::size_t>(s.channels);
+  std::vector<float> values;
   for (std::size_t i = 0; i < count; ++i)
-    map.texels.push_back(static_cast<float>(random.uniform(s.bits == 32 ? -3 : 0, 1)));
+    values.push_back(static_cast<float>(random.uniform(s.bits == 32 ? -3 : 0, 1)));
+  map.texels = values;
   const std::vector<Rounding> rounding(static_cast<std::size_t>(s.channels), Rounding::nearest);
   EXPECT_TRUE(quantise(map, s.bits, rounding));
   return map;
@@ -92,7 +94,7 @@ TEST_F(MapFileTest, AShapeStandsInForTheDescription) {
   std::filesystem::remove(path("map.png.json"));
   EXPECT_EQ(error_id("map.png"), "maps.description");
   MapData shape = map;
-  shape.texels.clear();
+  shape.texels = {};
   const Result<MapFile> read = read_map(path("map.png"), &shape);
   ASSERT_TRUE(read) << format(read.error());
   expect_same(read->map, map);
@@ -138,7 +140,7 @@ TEST_F(MapFileTest, OneChangedTexelIsSeen) {
   const Result<MapFile> read = read_map(path("map.png"));
   ASSERT_TRUE(read) << format(read.error());
   EXPECT_NE(read->map.texels[64], map.texels[64]);
-  EXPECT_TRUE(std::equal(map.texels.begin(), map.texels.begin() + 64, read->map.texels.begin()));
+  for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(read->map.texels[i], map.texels[i]);
 }
 
 TEST_F(MapFileTest, BrokenFilesAreRefused) {

@@ -26,7 +26,7 @@ void add_normal_map(MapSet& maps) {
   normal = maps.at("height");
   normal.name = "normal";
   normal.channels = 3;
-  normal.texels = {0, 0, 1};
+  normal.texels = std::vector<float>{0, 0, 1};
 }
 
 float float_at(const std::vector<std::byte>& bytes, std::size_t offset) {

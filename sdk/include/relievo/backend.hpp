@@ -23,7 +23,8 @@ struct BackendInfo {
   std::string device, driver, api_version;
   std::string shader_target;  ///< what it consumes: "spirv", "glsl-450"
   /// Names of the shader-model features of descriptors ("compute", "geometry", "explicit_lod", "texture_3d", "gather",
-  /// "vertex_texture") and of abilities ("timestamps", "linear_float32", "validation").
+  /// "vertex_texture") and of abilities ("timestamps", "linear_float32", "shared_memory",
+  /// "validation").
   std::set<std::string> features;
   std::size_t max_storage_buffer = 0;  ///< bytes that a shader can reach in one; 0: no limit is known
 };
@@ -32,6 +33,7 @@ struct BackendOptions {
   bool validation = false;     ///< Vulkan validation layer, OpenGL debug output: reported in JobResult::messages
   std::string device;          ///< substring of the device to use; empty = the first suitable one
   std::string pipeline_cache;  ///< file of the Vulkan pipeline cache, read and written; empty = none
+  bool copies_always = false;  ///< Vulkan copies buffers to and from the device even where both share their memory
   int fail_at_call = -1;       ///< null backend only: this call (0-based) fails
 };
 

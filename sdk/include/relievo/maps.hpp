@@ -13,20 +13,21 @@
 #include "relievo/backend.hpp"
 #include "relievo/compose.hpp"
 #include "relievo/height_map.hpp"
+#include "relievo/map_texels.hpp"
 
 namespace relievo {
 
-/// A map in memory: `channels` floats a texel, interleaved, row 0 first, the levels one after another.
+/// A map in memory: `channels` values a texel, interleaved, row 0 first, the levels one after another.
 struct MapData {
   std::string name;
   int width = 0, height = 0;  ///< texels of level 0; level k has max(1, extent >> k)
   int channels = 1;           ///< 1–4
-  std::vector<float> texels;
+  MapTexels texels;
   AddressMode address = AddressMode::repeat;
   int levels = 1;
   int depth = 1;  ///< layers of an array or a 3D map, one after another; then levels is 1
   MapDimension dimension = MapDimension::flat;
-  /// 8, 16: every texel is k / (2^bits − 1) and the texture is unorm; 32: floats.
+  /// 8, 16: every texel is k / (2^bits − 1) and the texture is unorm; 32: floats. Texels of more bits are rounded.
   int bits = 32;
 };
 
@@ -55,7 +56,7 @@ MapData map_shape(const MapDescriptor& descriptor, int width, int height, Addres
 using MapSet = std::map<std::string, MapData, std::less<>>;
 
 /// The set that holds the height map alone.
-MapSet map_set(const HeightMap& height_map);
+MapSet map_set(HeightMap height_map);
 
 /// The maps that a stage and the technique in its roles read, with whatever values of their axes; `technique` is empty
 /// for stages that trace nothing.

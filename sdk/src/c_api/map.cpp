@@ -1,4 +1,6 @@
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "c_api/boundary.hpp"
 #include "c_api/heights.hpp"
@@ -6,7 +8,8 @@
 #include "relievo/maps.hpp"
 
 struct relievo_map {
-  relievo::MapData data;
+  relievo::MapData data;  ///< without its texels
+  std::vector<float> texels;
 };
 
 namespace relievo::c_api {
@@ -17,16 +20,18 @@ static_assert(RELIEVO_VOLUME == static_cast<int>(MapDimension::volume));
 namespace {
 
 Result<std::unique_ptr<relievo_map>> bake(const relievo_registry& registry, const relievo_bake_desc& desc) {
-  const Result<HeightMap> heights = heights_of(desc.heights, desc.width, desc.height, desc.address);
+  Result<HeightMap> heights = heights_of(desc.heights, desc.width, desc.height, desc.address);
   if (!heights) return tl::unexpected(heights.error());
   const Result<std::map<std::string, double>> values = values_of(registry, desc.values, desc.value_count);
   if (!values) return tl::unexpected(values.error());
   const Result<std::unique_ptr<Backend>> backend = open_backend(desc.backend);
   if (!backend) return tl::unexpected(backend.error());
-  MapSet maps = map_set(*heights);
+  MapSet maps = map_set(*std::move(heights));
   if (Status status = bake_map(**backend, registry.registry, desc.map, maps, *values); !status)
     return tl::unexpected(status.error());
-  return std::make_unique<relievo_map>(relievo_map{std::move(maps.find(desc.map)->second)});
+  MapData& baked = maps.find(desc.map)->second;
+  std::vector<float> texels = std::exchange(baked.texels, {}).floats();
+  return std::make_unique<relievo_map>(relievo_map{std::move(baked), std::move(texels)});
 }
 
 }  // namespace
@@ -68,8 +73,8 @@ relievo_status relievo_map_get(const relievo_map* map, relievo_map_info* info, r
              data.bits,
              static_cast<relievo_map_dimension>(data.dimension),
              static_cast<relievo_address_mode>(data.address),
-             data.texels.data(),
-             data.texels.size()};
+             map->texels.data(),
+             map->texels.size()};
     return {};
   });
 }

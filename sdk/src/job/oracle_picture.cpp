@@ -161,22 +161,21 @@ std::vector<Segment> segments_of_row(const std::vector<Tetrahedron>& tetrahedra,
 }
 
 MapData empty_hits(int width, int height) {
-  MapData map{"oracle_hits", width, height, 3, {}, AddressMode::clamp};
-  map.texels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
-  return map;
+  std::vector<float> none(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+  return {"oracle_hits", width, height, 3, std::move(none), AddressMode::clamp};
 }
 
 void set_hit(MapData& map, std::size_t pixel, HitStatus status, double t, int cell) {
-  map.texels[3 * pixel] = static_cast<float>(status);
-  map.texels[3 * pixel + 1] = static_cast<float>(t);
-  map.texels[3 * pixel + 2] = static_cast<float>(cell);
+  map.texels.set(3 * pixel, static_cast<float>(status));
+  map.texels.set(3 * pixel + 1, static_cast<float>(t));
+  map.texels.set(3 * pixel + 2, static_cast<float>(cell));
 }
 
 }  // namespace
 
 HeightMap height_map_of(const MapSet& maps) {
   const MapData& height = maps.at("height");
-  return {height.width, height.height, height.texels, height.address};
+  return {height.width, height.height, height.texels.floats(), height.address};
 }
 
 MapData exact_surface_hits(const HeightMap& height, const Image& origins, const Image& directions) {

@@ -7,6 +7,7 @@
 #include "job/program.hpp"
 #include "maps/bake_plan.hpp"
 #include "maps/check_finite.hpp"
+#include "maps/quantise.hpp"
 #include "relievo/maps.hpp"
 
 namespace relievo {
@@ -85,29 +86,58 @@ Job bake_job(const PreparedProgram& prepared, const MapDescriptor& descriptor, c
   return job;
 }
 
-/// Adds what came back. Each buffer is freed when it is copied: maps may be large.
-void append_texels(std::vector<std::vector<std::byte>> buffers, std::vector<float>& texels) {
-  for (std::vector<std::byte>& buffer : buffers) {
-    const std::size_t start = texels.size();
-    texels.resize(start + buffer.size() / sizeof(float));
-    std::memcpy(texels.data() + start, buffer.data(), buffer.size());
-    buffer = {};
-  }
-}
+/// The floats of a map as they come back, kept in the bits that it has in the end: maps may be large.
+class BakedTexels {
+ public:
+  BakedTexels(const MapDescriptor& descriptor, int bits, std::size_t count)
+      : descriptor_(descriptor), bits_(bits), values_(make_values(has_exact_channels() ? 32 : bits, count)) {}
 
-Result<std::vector<float>> bake_texels(Backend& backend, const PreparedProgram& prepared,
-                                       const MapDescriptor& descriptor, const MapSet& maps, const MapData& output,
-                                       const BakePlan& plan, std::vector<std::string>* messages) {
-  std::vector<float> texels;
-  texels.reserve(static_cast<std::size_t>(output.depth) * plan.layer_floats);
+  Status add(std::span<const std::byte> bytes) {
+    std::vector<float> part;
+    for (; !bytes.empty(); bytes = bytes.subspan(part.size() * sizeof(float))) {
+      part.resize(std::min(part_values, bytes.size() / sizeof(float)));
+      std::memcpy(part.data(), bytes.data(), part.size() * sizeof(float));
+      Status finite = check_finite(descriptor_.name, part, added_, ErrorCode::backend, "maps.non-finite");
+      if (!finite) return finite;
+      if (Status status = append_rounded(descriptor_.name, part, descriptor_.rounding, values_); !status) return status;
+      added_ += part.size();
+    }
+    return {};
+  }
+
+  /// Gives the map its texels. The values of exact channels decide together how many bits they need.
+  Status move_to(MapData& map) {
+    map.texels = std::move(values_);
+    map.bits = map.texels.bits();
+    return map.bits == bits_ ? Status() : quantise(map, bits_, descriptor_.rounding);
+  }
+
+ private:
+  bool has_exact_channels() const {
+    const auto& rounding = descriptor_.rounding;
+    return std::find(rounding.begin(), rounding.end(), Rounding::exact) != rounding.end();
+  }
+
+  static constexpr std::size_t part_values = std::size_t{1} << 16;
+  const MapDescriptor& descriptor_;
+  const int bits_;
+  MapTexels::Values values_;
+  std::size_t added_ = 0;
+};
+
+Status bake_texels(Backend& backend, const PreparedProgram& prepared, const MapDescriptor& descriptor,
+                   const MapSet& maps, const MapData& output, const BakePlan& plan, BakedTexels& texels,
+                   std::vector<std::string>* messages) {
   for (int first = 0; first < output.depth; first += plan.layers) {
     const BakeSlab slab{first, std::min(plan.layers, output.depth - first)};
     Result<JobResult> result = backend.execute(bake_job(prepared, descriptor, maps, output, plan, slab));
     if (!result) return tl::unexpected(result.error());
     append_messages(*result, messages);
-    append_texels(std::move(result->read_backs), texels);
+    for (std::vector<std::byte>& buffer : result->read_backs) {
+      if (Status status = texels.add(std::exchange(buffer, {})); !status) return status;
+    }
   }
-  return texels;
+  return {};
 }
 
 }  // namespace
@@ -135,11 +165,10 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
   if (!composed) return tl::unexpected(composed.error());
   Result<PreparedProgram> prepared = prepare_composed(std::move(*composed), backend.info().shader_target);
   if (!prepared) return tl::unexpected(prepared.error());
-  Result<std::vector<float>> texels = bake_texels(backend, *prepared, descriptor, maps, output, *plan, messages);
-  if (!texels) return tl::unexpected(texels.error());
-  output.texels = std::move(*texels);
-  if (Status status = check_finite(output, ErrorCode::backend, "maps.non-finite"); !status) return status;
-  if (Status status = quantise(output, bits, descriptor.rounding); !status) return status;
+  BakedTexels texels(descriptor, bits, static_cast<std::size_t>(output.depth) * plan->layer_floats);
+  Status baked = bake_texels(backend, *prepared, descriptor, maps, output, *plan, texels, messages);
+  if (!baked) return baked;
+  if (Status status = texels.move_to(output); !status) return status;
   maps[descriptor.name] = std::move(output);
   return {};
 }

@@ -130,8 +130,9 @@ Status check_cones(const HeightMap& height_map, const MapData& map, bool by_sect
   const std::size_t cells = height_map.texels.size(), stride = (cells + sampled_cells - 1) / sampled_cells;
   for (int layer = 0; layer < map.depth; ++layer) {
     for (std::size_t i = 0; i < cells; i += stride) {
-      const float* texel = &map.texels[3 * (static_cast<std::size_t>(layer) * cells + i)];
-      const Cone cone = {texel[0], texel[1], static_cast<double>(texel[2]) * static_cast<double>(texel[2])};
+      const std::size_t texel = 3 * (static_cast<std::size_t>(layer) * cells + i);
+      const double root = map.texels[texel + 2];
+      const Cone cone = {map.texels[texel], map.texels[texel + 1], root * root};
       const int x = static_cast<int>(i) % map.width, y = static_cast<int>(i) / map.width;
       Sector sector = sector_of(layer, sectors);
       // These stand for the cells beyond the border too, which see their sector from elsewhere.

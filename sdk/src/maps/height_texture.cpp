@@ -37,10 +37,10 @@ Result<Texture> height_texture(const MapData& height, std::string_view format) {
   if (format == "red") return texture;
   if (format == "alpha") {
     texture.format = Format::rgba32_float;
-    texture.data = {alpha_texels(height.texels)};
+    texture.data = {alpha_texels(height.texels.floats())};
   } else if (format == "red_green") {
     texture.format = Format::rg8_unorm;
-    texture.data = {red_green_texels(height.texels)};
+    texture.data = {red_green_texels(height.texels.floats())};
   } else {
     return fail(ErrorCode::usage, "maps.height-format",
                 fmt::format("height format '{}' is unknown; expected red, alpha or red_green", format));

@@ -175,14 +175,14 @@ bool snap(float& value, int bits) {
 
 Status take_texels(const path& file, const Image& image, const MapLayout& layout, MapData& map) {
   const auto channels = static_cast<std::size_t>(map.channels);
-  map.texels.resize(texel_count(map) * channels);
+  std::vector<float> values(texel_count(map) * channels);
   for_each_texel(layout, [&](std::size_t texel, std::size_t pixel) {
     std::copy_n(image.pixels.begin() + static_cast<std::ptrdiff_t>(pixel * channels), channels,
-                map.texels.begin() + static_cast<std::ptrdiff_t>(texel * channels));
+                values.begin() + static_cast<std::ptrdiff_t>(texel * channels));
   });
-  for (std::size_t i = 0; i < map.texels.size(); ++i) {
-    const float given = map.texels[i];
-    if (snap(map.texels[i], map.bits)) continue;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const float given = values[i];
+    if (snap(values[i], map.bits)) continue;
     if (!std::isfinite(given))
       return file_error(file, "maps.non-finite",
                         fmt::format("has the value {} at element {}; expected a finite number", given, i));
@@ -190,6 +190,7 @@ Status take_texels(const path& file, const Image& image, const MapLayout& layout
                       fmt::format("has the value {} at element {}; expected a multiple of 1/{} in [0,1]", given, i,
                                   (1 << map.bits) - 1));
   }
+  map.texels = MapTexels(values, map.bits);
   return {};
 }
 

@@ -1,10 +1,8 @@
 /// Maps as textures of a Job.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
-#include <limits>
-#include <type_traits>
+#include <variant>
 
 #include "relievo/maps.hpp"
 
@@ -23,38 +21,32 @@ TexelAddress texel_address(AddressMode mode) {
   }
 }
 
-/// What one value is in the texture; a quantised one is a whole multiple already.
-template <class Stored>
-Stored stored_value(float value) {
-  if constexpr (std::is_same_v<Stored, float>) return value;
-  // NOLINTNEXTLINE(bugprone-incorrect-roundings): no value is negative
-  return static_cast<Stored>(value * static_cast<float>(std::numeric_limits<Stored>::max()) + 0.5f);
-}
-
-template <class Stored>
-std::vector<std::byte> level_bytes(const MapData& map, const MapLevel& level, std::size_t stored) {
+/// The texels of a level, of `stored` channels each in the texture; those that the map has not are 0.
+template <class Value>
+std::vector<std::byte> level_bytes(const std::vector<Value>& values, const MapData& map, const MapLevel& level,
+                                   std::size_t stored) {
   const std::size_t count = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height) *
                             static_cast<std::size_t>(map.depth);
   const std::size_t channels = static_cast<std::size_t>(map.channels);
-  const float* values = map.texels.data() + level.offset * channels;
-  if (std::is_same_v<Stored, float> && stored == channels) {
-    const auto* first = reinterpret_cast<const std::byte*>(values);
-    return {first, first + count * channels * sizeof(float)};
+  const Value* first = values.data() + level.offset * channels;
+  std::vector<std::byte> bytes(count * stored * sizeof(Value));
+  if (stored == channels) {
+    std::memcpy(bytes.data(), first, bytes.size());
+    return bytes;
   }
-  std::vector<std::byte> bytes(count * stored * sizeof(Stored));
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t c = 0; c < channels; ++c) {
-      const Stored value = stored_value<Stored>(values[i * channels + c]);
-      std::memcpy(&bytes[(i * stored + c) * sizeof(Stored)], &value, sizeof(Stored));
-    }
+    std::memcpy(&bytes[i * stored * sizeof(Value)], first + i * channels, channels * sizeof(Value));
   }
   return bytes;
 }
 
-std::vector<std::byte> level_bytes(const MapData& map, const MapLevel& level, std::size_t stored) {
-  if (map.bits == 8) return level_bytes<std::uint8_t>(map, level, stored);
-  if (map.bits == 16) return level_bytes<std::uint16_t>(map, level, stored);
-  return level_bytes<float>(map, level, stored);
+std::vector<std::vector<std::byte>> all_bytes(const MapTexels& texels, const MapData& map, std::size_t stored) {
+  std::vector<std::vector<std::byte>> levels;
+  for (int k = 0; k < map.levels; ++k) {
+    levels.push_back(std::visit([&](const auto& values) { return level_bytes(values, map, map_level(map, k), stored); },
+                                texels.values()));
+  }
+  return levels;
 }
 
 Format map_format(const MapData& map, std::size_t stored) {
@@ -78,9 +70,9 @@ MapLevel map_level(const MapData& map, int level) {
   return result;
 }
 
-MapSet map_set(const HeightMap& height_map) {
+MapSet map_set(HeightMap height_map) {
   MapSet maps;
-  maps["height"] = {"height", height_map.width, height_map.height, 1, height_map.texels, height_map.address};
+  maps["height"] = {"height", height_map.width, height_map.height, 1, std::move(height_map.texels), height_map.address};
   return maps;
 }
 
@@ -106,7 +98,11 @@ Texture map_texture(const MapData& map) {
   texture.sampler.address.fill(texel_address(map.address));
   texture.sampler.address[2] = TexelAddress::clamp;
   texture.levels = map.levels;
-  for (int k = 0; k < map.levels; ++k) texture.data.push_back(level_bytes(map, map_level(map, k), stored));
+  if (map.texels.bits() == map.bits) {
+    texture.data = all_bytes(map.texels, map, stored);
+  } else {
+    texture.data = all_bytes(MapTexels(map.texels.floats(), map.bits), map, stored);
+  }
   return texture;
 }
 

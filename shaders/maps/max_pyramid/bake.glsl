@@ -1,13 +1,12 @@
-// Level 0: cell (i, j) lies between the texels i, i+1 and j, j+1; a bilinear patch is nowhere above its highest corner.
+// Level 0: cell (i, j) lies between the texels i, i+1 and j, j+1, and is bounded by its highest corner.
 // With mirror, clamp and clip, cell 0 also covers the half texel before texel 0, which its corners bound as well.
 // Level k: the maximum of four. Padding to a power of two is 0: it lies outside every tile.
 #include "shaders/lib/bake.glsl"
+#include "shaders/lib/bake_corners.glsl"
 
 float max_pyramid_cell(ivec2 cell) {
-  ivec2 extent = textureSize(relievo_height_map, 0);
-  if (any(greaterThanEqual(cell, extent))) return 0.0;
-  vec4 corners = relievo_height_corners(vec2(cell), vec2(extent));
-  return max(max(corners.x, corners.y), max(corners.z, corners.w));
+  bool is_padding = any(greaterThanEqual(cell, textureSize(relievo_height_map, 0)));
+  return is_padding ? 0.0 : relievo_bake_highest_corner(cell);
 }
 
 void relievo_bake(ivec2 texel) {

@@ -1,14 +1,8 @@
-// Pass 0: the greatest of the four corners of a cell, which bounds its bilinear patch. Later passes: a window is n × n of the
+// Pass 0: the greatest of the four corners of a cell, which bounds it. Later passes: a window is n × n of the
 // windows of the pass before. Reads beyond the map are folded back into it, with the quadrant's direction where it runs backwards.
 #include "shaders/lib/bake.glsl"
+#include "shaders/lib/bake_corners.glsl"
 #include "shaders/lib/fold.glsl"
-
-float quadrant_maxima_cell(ivec2 cell) {
-  ivec2 extent = textureSize(relievo_height_map, 0);
-  float low = max(relievo_height_texel(cell, extent), relievo_height_texel(cell + ivec2(1, 0), extent));
-  float high = max(relievo_height_texel(cell + ivec2(0, 1), extent), relievo_height_texel(cell + ivec2(1, 1), extent));
-  return max(low, high);
-}
 
 float quadrant_maxima_below(ivec2 cell, ivec2 heading, int channel) {
   ivec2 extent = relievo_bake_extent();
@@ -19,7 +13,7 @@ float quadrant_maxima_below(ivec2 cell, ivec2 heading, int channel) {
 void relievo_bake(ivec2 texel) {
   int pass = relievo_bake_pass();
   if (pass == 0) {
-    relievo_bake_write(texel, 0, quadrant_maxima_cell(texel));
+    relievo_bake_write(texel, 0, relievo_bake_highest_corner(texel));
     return;
   }
   ivec2 heading = relievo_heading(relievo_bake_layer());

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "support/height_maps.hpp"
 #include "support/linear_claims.hpp"
@@ -55,6 +56,38 @@ TEST(Axes, EveryHeightFormatGivesTheSameHits) {
         if (hits[i].status != red[i].status || std::abs(hits[i].h - red[i].h) > 1e-5) ++apart;
       }
       EXPECT_LE(apart, format == 1.0 ? 0u : 2u) << backend << ", format " << format;
+    }
+  }
+}
+
+std::size_t count_different(const std::vector<Hit>& a, const std::vector<Hit>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    different +=
+        std::tie(a[i].status, a[i].t, a[i].u, a[i].v, a[i].h) != std::tie(b[i].status, b[i].t, b[i].u, b[i].v, b[i].h);
+  }
+  return different;
+}
+
+/// Heights are the same however they come, so hits are the same in every bit; past every kind of border.
+TEST(Axes, GatheredHeightsGiveTheSameHits) {
+  for (const AddressMode mode : all_address_modes) {
+    for (const HeightMap& map :
+         {with_address(white_noise_map(7, 13), mode), with_address(white_noise_map(1, 9), mode)}) {
+      const std::vector<Ray> rays = bounded_rays(map, 2000, 11);
+      for (const std::string& backend : both_backends) {
+        for (const std::string technique : {"relief", "exact"}) {
+          for (const double format : {0.0, 1.0, 2.0}) {
+            const auto hits = [&](double fetch) {
+              return trace_on(backend, map, rays,
+                              request_of(technique, {{"height.format", format}, {"height.fetch", fetch}}));
+            };
+            EXPECT_EQ(count_different(hits(0), hits(1)), 0u) << technique << " with " << to_string(mode) << ", "
+                                                             << map.width << " wide, on " << backend << ", " << format;
+          }
+        }
+      }
     }
   }
 }

@@ -20,8 +20,6 @@ VkImageViewType view_type(const Texture& texture) {
   return is_3d(texture) ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D;
 }
 
-constexpr VkMemoryPropertyFlags never = ~VkMemoryPropertyFlags{0};
-
 /// In memory of the first type that is as wished; the host sees it if its memory is all that `mapped` names.
 DeviceBuffer make_buffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage,
                          std::span<const VkMemoryPropertyFlags> wishes, VkMemoryPropertyFlags mapped,
@@ -130,10 +128,8 @@ DeviceBuffer create_buffer(const Device& device, const Buffer& buffer) {
   constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                                        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                        VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
-  constexpr VkMemoryPropertyFlags wishes[] = {shared_with_host, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
-  const bool may_share = device.may_share_memory();
-  return make_buffer(device, buffer.size, usage, std::span(wishes).subspan(may_share ? 0 : 1),
-                     may_share ? shared_with_host : never,
+  const VkMemoryPropertyFlags wishes[] = {device.shared_memory(), VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
+  return make_buffer(device, buffer.size, usage, wishes, device.shared_memory(),
                      fmt::format("creating buffer \"{}\" of {} bytes", buffer.name, buffer.size));
 }
 

@@ -45,7 +45,7 @@ VkDevice create_device(const DeviceTraits& traits) {
 Device::Device(const BackendOptions& options)
     : instance_(options.validation ? &messages_ : nullptr),
       traits_(choose_device(instance_, options.device)),
-      may_share_memory_(!options.copies_always) {
+      shared_memory_(options.copies_always ? ~VkMemoryPropertyFlags{0} : shared_with_host) {
   const auto lock = lock_loader();
   get_format_properties_ = vkGetPhysicalDeviceFormatProperties;
   get_image_format_properties_ = vkGetPhysicalDeviceImageFormatProperties;

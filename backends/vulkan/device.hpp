@@ -33,7 +33,8 @@ class Device {
 
   VkDevice handle() const { return device_; }
   const DeviceTraits& traits() const { return traits_; }
-  bool may_share_memory() const { return may_share_memory_; }
+  /// What memory must be for the host to see buffers in it; more than any memory is, where all are to be copied.
+  VkMemoryPropertyFlags shared_memory() const { return shared_memory_; }
   const VkPhysicalDeviceLimits& limits() const { return traits_.properties.limits; }
   Messages& messages() { return messages_; }
 
@@ -69,7 +70,7 @@ class Device {
   Messages messages_;
   Instance instance_;
   DeviceTraits traits_;
-  bool may_share_memory_;
+  VkMemoryPropertyFlags shared_memory_;
   PFN_vkGetPhysicalDeviceFormatProperties get_format_properties_ = nullptr;
   PFN_vkGetPhysicalDeviceImageFormatProperties get_image_format_properties_ = nullptr;
   VkDevice device_ = VK_NULL_HANDLE;

@@ -6,6 +6,7 @@
 #include "relievo/certify.hpp"
 #include "support/height_maps.hpp"
 #include "support/pipeline.hpp"
+#include "support/rotate_texels.hpp"
 
 namespace relievo::test {
 
@@ -40,12 +41,6 @@ inline std::size_t element(const MapData& map, int x, int y, int channel = 0, in
   const auto row = static_cast<std::size_t>(layer * shape.height + y);
   const std::size_t texel = shape.offset + row * static_cast<std::size_t>(shape.width) + static_cast<std::size_t>(x);
   return texel * static_cast<std::size_t>(map.channels) + static_cast<std::size_t>(channel);
-}
-
-/// Moves every value `by` elements towards the front, round the end.
-inline void rotate_texels(MapData& map, std::size_t by) {
-  const std::vector<float> before = map.texels.floats();
-  for (std::size_t i = 0; i < before.size(); ++i) map.texels.set(i, before[(i + by) % before.size()]);
 }
 
 /// Every value to the nearest multiple of 1/255: what a careless quantisation does to a promise.

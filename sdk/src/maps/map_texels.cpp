@@ -5,6 +5,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "maps/quantise.hpp"
+
 namespace relievo {
 
 namespace {
@@ -22,26 +24,17 @@ Stored store(float value) {
   return static_cast<Stored>(std::lround(held * std::numeric_limits<Stored>::max()));
 }
 
-template <class Stored>
-std::vector<Stored> store_all(std::span<const float> values) {
-  std::vector<Stored> stored(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) stored[i] = store<Stored>(values[i]);
-  return stored;
-}
-
 template <class Vector>
 using StoredIn = typename std::decay_t<Vector>::value_type;
 
 }  // namespace
 
-MapTexels::MapTexels(std::span<const float> values, int bits) {
-  if (bits == 8) {
-    values_ = store_all<std::uint8_t>(values);
-  } else if (bits == 16) {
-    values_ = store_all<std::uint16_t>(values);
-  } else {
-    values_ = store_all<float>(values);
-  }
+MapTexels::MapTexels(std::span<const float> values, int bits) : values_(make_values(bits, values.size())) {
+  std::visit(
+      [values](auto& stored) {
+        for (const float value : values) stored.push_back(store<StoredIn<decltype(stored)>>(value));
+      },
+      values_);
 }
 
 int MapTexels::bits() const {

@@ -28,15 +28,21 @@ bool relievo_search_pass(Walk walk, inout WalkSearch search, float distance) {
   return !search.ends && !relievo_walk_is_far(search.s);
 }
 
-// Solves the cell at s. Without a hit it goes on to the cell behind; returns false when the middle loop has to end.
-bool relievo_search_solve(Walk walk, WalkPlace place, vec4 corners, inout WalkSearch search) {
+// Solves the cell at s, from there to its border, which is returned; search.hit says whether it was hit.
+float relievo_search_cell(Walk walk, WalkPlace place, vec4 corners, inout WalkSearch search) {
   float border = relievo_walk_border(walk, place);
   search.hit = relievo_walk_solve(walk, place, corners, min(border, max(relievo_walk_left(walk, search.s), 0.0)));
   if (search.hit < RELIEVO_WALK_NEVER) {
     bool is_below = relievo_cell_clearance(corners, vec3(place.fraction, place.height)) < 0.0;
     search.starts_inside = is_below && relievo_walk_t(walk, search.s) == 0.0;
-    return false;
   }
+  return border;
+}
+
+// Without a hit it goes on to the cell behind; returns false when the middle loop has to end.
+bool relievo_search_solve(Walk walk, WalkPlace place, vec4 corners, inout WalkSearch search) {
+  float border = relievo_search_cell(walk, place, corners, search);
+  if (search.hit < RELIEVO_WALK_NEVER) return false;
   return relievo_search_pass(walk, search, border + RELIEVO_WALK_MARGIN);
 }
 

@@ -1,30 +1,134 @@
-// Each step reads, for the cell that the ray is in and the quadrant that it heads for, the greatest heights E over windows of
-// 1, n, nr and nr² cells ahead. Within a window the ray cannot meet the surface before it falls to E: it goes on to there or to
-// the window's border, whichever comes first, in the window that lets it go furthest. Where not even the cell lets it
-// through, the cell is solved.
+// Each step reads, for the cell that the ray is in and the quadrant that it heads for, the greatest heights E over four windows
+// ahead and the cell's corners. Within a window the ray cannot meet the surface before it falls to E: it goes on to there
+// or to the window's border, whichever comes first, in the window that lets it go furthest. It also leaves its cell where
+// it clears the patch between the corners. Where nothing lets it through, the cell is solved.
+//
+// Between two solved cells the ray glides: from a place that is known exactly, by a distance in one float. What rounding
+// can do over that distance is taken off the ray's height, so that a glide errs on the safe side; the cells it ends in
+// are solved from their exact place. A step's cost is the time until its result is there, hence whole numbers where
+// they are quicker: floats that are not negative are ordered as their bits are.
 #include "shaders/lib/walk_search.glsl"
 
-struct QuadrantMaximaPace {
-  vec4 u, v;   // s from a window's begin to its end
-  float fall;  // s a unit of H, if the ray falls
+const float QUADRANT_MAXIMA_REACH = 512.0;      // s: a glide goes no further
+const float QUADRANT_MAXIMA_ROUNDING = 2.5e-6;  // of H, a unit of s: see README.md
+const float QUADRANT_MAXIMA_DECODING = 6.0e-5;  // of H: a corner can be read so much too low
+const float QUADRANT_MAXIMA_MARGIN = 2.0e-7;    // s a unit of s, to get across a border
+
+// Fixed for a ray, in the units that a texel's bytes count in.
+struct GlidePace {
+  vec2 slope;         // cells a unit of s, towards the quadrant
+  float fall;         // s a unit of height, if the ray falls
+  float rise, climb;  // height a unit of s; climb is 0 if the ray falls
 };
 
-QuadrantMaximaPace quadrant_maxima_pace(Walk walk) {
-  vec4 widths = relievo_quadrant_maxima_widths();
-  precise vec4 u = widths * walk.pace.x, v = widths * walk.pace.y;
-  precise float fall = 1.0 / max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER);
-  return QuadrantMaximaPace(u, v, fall);
+// From one exact place; what a step needs is made here, once.
+struct Glide {
+  ivec2 base, turn;  // cell where it starts; from there to the same cell one period back
+  ivec2 against;     // −1 along an axis that is headed for backwards, else 0
+  vec2 ahead;        // cells from the near corner of `base`, towards the quadrant
+  vec4 u, v;         // s where the windows at `base` are left along each axis
+  vec2 cell;         // and its cell
+  float top_window, top_corner;  // height where it starts, less what rounding can do
+  float left;        // s where it ends at the latest
+  float margin;      // s to get across a border
+};
+
+GlidePace quadrant_maxima_pace(Walk walk) {
+  precise float fall = 1.0 / (RELIEVO_QUADRANT_WINDOW_UNIT * max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER));
+  precise float rise = RELIEVO_QUADRANT_CORNER_UNIT * walk.rise;
+  precise float climb = RELIEVO_QUADRANT_WINDOW_UNIT * max(walk.rise, 0.0);
+  return GlidePace(abs(walk.slope), fall, rise, climb);
 }
 
-// How far the ray is let through; `border`: how far it is to the cell's border.
-float quadrant_maxima_free(Walk walk, QuadrantMaximaPace pace, WalkPlace place, out float border) {
-  vec4 greatest = relievo_quadrant_maxima_at(relievo_fold_cell(place.cell, walk.extent, walk.heading));
-  precise vec2 behind = abs(walk.behind_at_zero - place.fraction) * walk.pace;
-  precise vec4 borders = min(pace.u - behind.x, pace.v - behind.y);
-  precise vec4 sink = (place.height - greatest) * pace.fall;
-  vec4 free = min(borders, sink);
-  border = borders.x;
-  return max(max(free.x, free.y), max(free.z, free.w));
+Glide quadrant_maxima_glide(Walk walk, vec2 s) {
+  WalkPlace place = relievo_walk_place(walk, s);
+  vec4 widths = relievo_quadrant_maxima_widths();
+  Glide glide;
+  glide.against = ivec2(min(walk.heading, 0.0));
+  glide.base = ivec2(relievo_fold_to_first_period(place.cell, walk.extent)) - glide.against;
+  glide.turn = ivec2(walk.heading * walk.extent);
+  glide.ahead = abs(walk.behind_at_zero - place.fraction);
+  precise vec4 u = (widths - glide.ahead.x) * walk.pace.x, v = (widths - glide.ahead.y) * walk.pace.y;
+  precise vec2 cell = (1.0 - glide.ahead) * walk.pace;
+  glide.u = u;
+  glide.v = v;
+  glide.cell = cell;
+  float reach = min(min(walk.extent.x, walk.extent.y) - 0.5, QUADRANT_MAXIMA_REACH);
+  glide.left = min(relievo_walk_left(walk, s), reach);
+  precise float top = place.height - (QUADRANT_MAXIMA_ROUNDING * glide.left + QUADRANT_MAXIMA_DECODING);
+  glide.top_window = RELIEVO_QUADRANT_WINDOW_UNIT * top;
+  glide.top_corner = RELIEVO_QUADRANT_CORNER_UNIT * top;
+  glide.margin = QUADRANT_MAXIMA_MARGIN * max(glide.left, 16.0);
+  return glide;
+}
+
+// The cell that lies so many cells ahead, folded back into the map.
+QuadrantMaxima quadrant_maxima_ahead(Walk walk, Glide glide, ivec2 passed) {
+  ivec2 cell = glide.base + (passed ^ glide.against);
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
+  // One of the two is within the map. The other is larger, or negative, which is larger still without a sign.
+  cell = ivec2(min(uvec2(cell), uvec2(cell - glide.turn)));
+  return relievo_quadrant_maxima_at(cell, relievo_quadrant(walk.heading));
+#else
+  FoldedCell folded = relievo_fold_cell(vec2(cell), walk.extent, walk.heading);
+  return relievo_quadrant_maxima_at(ivec2(folded.cell), relievo_quadrant(folded.heading));
+#endif
+}
+
+// The patch along a ray that crosses its cell from `place` (clear of the near corner in cells, height), in corner units, is a
+// quadratic whose control points bound it: the bits of a number that is not negative if the ray stays above all three.
+int quadrant_maxima_clears(vec4 corners, vec3 place, vec3 way) {
+  precise float du = corners.y - corners.x;
+  precise float dv = corners.z - corners.x;
+  precise float twist = (corners.w - corners.z) - du;
+  precise float a = place.z - (corners.x + du * place.x + (dv + twist * place.x) * place.y);
+  precise float b = way.z - (du * way.x + dv * way.y + twist * (place.x * way.y + place.y * way.x));
+  precise float c = -twist * way.x * way.y;
+  precise float middle = a + 0.5 * b;
+  precise float end = (a + b) + c;
+  return floatBitsToInt(a) | floatBitsToInt(middle) | floatBitsToInt(end);
+}
+
+// The s that the ray may go to from `s`, in bits; `border`: where it leaves the cell.
+int quadrant_maxima_free(Walk walk, Glide glide, GlidePace pace, float s, out int border) {
+  precise vec2 at = glide.ahead + s * pace.slope;
+  ivec2 passed = ivec2(at);
+  QuadrantMaxima maxima = quadrant_maxima_ahead(walk, glide, passed);
+
+  precise vec2 before = vec2(passed) * walk.pace;
+  precise vec4 u = glide.u + before.x, v = glide.v + before.y;
+  precise vec2 cell = glide.cell + before;
+  precise vec4 sink = (glide.top_window + s * pace.climb - maxima.windows) * pace.fall;
+  ivec4 free = min(min(floatBitsToInt(u), floatBitsToInt(v)), floatBitsToInt(sink));
+  border = min(floatBitsToInt(cell.x), floatBitsToInt(cell.y));
+
+  precise float height = glide.top_corner + s * pace.rise;
+  precise float to_border = intBitsToFloat(border) - s;
+  precise vec3 way = to_border * vec3(pace.slope, pace.rise);
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
+  precise vec2 within = at - vec2(passed);
+  int clears = quadrant_maxima_clears(maxima.corners, vec3(within, height), way);
+#else
+  // Cells beyond the edges are not the patch between these corners, but have no other corners than these.
+  float highest = max(max(maxima.corners.x, maxima.corners.y), max(maxima.corners.z, maxima.corners.w));
+  precise float clearance = height + min(way.z, 0.0) - highest;
+  int clears = floatBitsToInt(clearance);
+#endif
+  return max(max(max(free.x, free.y), max(free.z, free.w)), clears < 0 ? clears : border);
+}
+
+// Glides on from `s`; false when it is at the glide's end. True: nothing lets the ray through there.
+bool quadrant_maxima_is_blocked(Walk walk, Glide glide, GlidePace pace, inout int steps, inout float s) {
+  bool is_blocked;
+  do {
+    --steps;
+    RELIEVO_COUNT_STEP();
+    int border;
+    int free = quadrant_maxima_free(walk, glide, pace, s, border);
+    is_blocked = free < max(border, floatBitsToInt(s));
+    s = is_blocked ? s : intBitsToFloat(free) + glide.margin;
+  } while (!is_blocked && s < glide.left && steps > 0);
+  return is_blocked;
 }
 
 Hit quadrant_maxima_trace(Ray ray) {
@@ -32,22 +136,21 @@ Hit quadrant_maxima_trace(Ray ray) {
   Walk walk;
   Hit hit;
   if (!relievo_search_begin(ray, textureSize(relievo_cell_corners_map, 0), interval, walk, hit)) return hit;
-  QuadrantMaximaPace pace = quadrant_maxima_pace(walk);
+  GlidePace pace = quadrant_maxima_pace(walk);
   WalkSearch search = relievo_search_start(quadrant_maxima_max_steps);
+  float on = 0.0;  // s from the place that is known exactly
   while (relievo_search_is_open(search)) {
-    while (search.steps > 0) {
-      while (search.steps > 0) {
-        --search.steps;
-        RELIEVO_COUNT_STEP();
-        float border;
-        float free = quadrant_maxima_free(walk, pace, relievo_walk_place(walk, search.s), border);
-        if (free < border || !relievo_search_pass(walk, search, free + RELIEVO_WALK_MARGIN)) break;
-      }
-      if (search.ends) break;
+    bool is_blocked = quadrant_maxima_is_blocked(walk, quadrant_maxima_glide(walk, search.s), pace, search.steps, on);
+    search.s = relievo_walk_on(search.s, on);
+    on = 0.0;
+    if (relievo_walk_is_far(search.s)) relievo_walk_rebase(walk, search.s);
+    if (is_blocked) {
+      // The next glide starts here and not behind the cell, so that it need not wait for the solution to be prepared.
       WalkPlace place = relievo_walk_place(walk, search.s);
-      if (!relievo_search_solve(walk, place, relievo_cell_corners_at(place.cell, walk.extent), search)) break;
+      float border = relievo_search_cell(walk, place, relievo_cell_corners_at(place.cell, walk.extent), search);
+      on = border + RELIEVO_WALK_MARGIN;
     }
-    if (relievo_search_is_open(search)) relievo_walk_rebase(walk, search.s);
+    search.ends = relievo_walk_left(walk, search.s) <= on;
   }
   return relievo_search_result(ray, interval, walk, search);
 }

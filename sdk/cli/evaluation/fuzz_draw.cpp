@@ -95,7 +95,7 @@ std::uint64_t seed_of(std::uint64_t seed, std::uint64_t round, std::string_view 
 }
 
 double draw_value(Random& random, const Parameter& p) {
-  if (p.name == "bits") return pick(random, std::array{8.0, 16.0, 32.0});
+  if (p.name == "bits") return std::clamp(pick(random, std::array{8.0, 16.0, 32.0}), p.minimum, p.maximum);
   switch (random.below(6)) {
     case 0:
       return p.minimum;

@@ -70,12 +70,15 @@ void add_heights(const HardInput& input, std::deque<HardCase>& cases, std::vecto
   }
 }
 
-/// Of every map that can be quantised.
+/// Of every map that can be quantised, as near to the case's bits as it goes.
 std::map<std::string, double> values_of(const HardInput& input, const Group& group) {
   std::map<std::string, double> values = input.values;
   if (group.bits != 0) {
     for (const auto& [name, map] : input.registry->maps) {
-      if (!map.rounding.empty()) values[name + ".bits"] = group.bits;
+      for (const Parameter& p : map.parameters) {
+        if (p.name == "bits" && !map.rounding.empty())
+          values[name + ".bits"] = std::clamp<double>(group.bits, p.minimum, p.maximum);
+      }
     }
   }
   for (const Parameter& p : input.registry->stages.at("ray").parameters) {

@@ -1,8 +1,8 @@
-/// Every window's value bounds the corners of its cells from above; over a cell the bilinear surface is nowhere above
-/// its corners. The windows' maxima are taken anew here, by sliding maxima along rows and then columns of the endless
-/// surface.
+/// Every window's value bounds the corners of its cells from above, and every corner is bounded by its own; over a cell
+/// the bilinear surface is nowhere above its corners. The windows' maxima are taken anew here, by sliding maxima along rows and
+/// then columns of the endless surface.
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <deque>
 #include <vector>
 
@@ -53,6 +53,18 @@ std::vector<double> window_maxima(const HeightMap& map, int count, bool before_x
   return maxima;
 }
 
+/// What bake.glsl may round away, which the technique allows for.
+constexpr double rounding = 1.0 / (1 << 22);
+
+/// The bytes of a channel as heights.
+struct Bytes {
+  double window, corner;
+};
+Bytes unpack(float channel) {
+  const auto both = static_cast<unsigned>(std::lround(static_cast<double>(channel) * 65535));
+  return {(both >> 8) / 255.0, (both & 255U) / 255.0};
+}
+
 Status check(const HeightMap& height_map, const MapData& map, const CertifyOptions& options, Certificate& certificate) {
   MapData expected;
   expected.width = height_map.width;
@@ -64,16 +76,22 @@ Status check(const HeightMap& height_map, const MapData& map, const CertifyOptio
     const auto found = options.values.find(name);
     return found == options.values.end() ? fallback : static_cast<int>(found->second);
   };
-  const int first = parameter("quadrant_maxima.first", 3), ratio = parameter("quadrant_maxima.ratio", 4);
-  const std::array<int, 4> widths = {1, first, first * ratio, first * ratio * ratio};
+  const int ratio = parameter("quadrant_maxima.ratio", 3);
   const std::size_t texels = height_map.texels.size();
   for (int layer = 0; layer < 4; ++layer) {
-    for (std::size_t channel = 0; channel < 4; ++channel) {
-      const std::vector<double> maxima = window_maxima(height_map, widths[channel], (layer & 1) != 0, (layer & 2) != 0);
+    int width = parameter("quadrant_maxima.first", 2);
+    const bool before_x = (layer & 1) != 0, before_y = (layer & 2) != 0;
+    for (int channel = 0; channel < 4; ++channel, width *= ratio) {
+      const std::vector<double> maxima = window_maxima(height_map, width, before_x, before_y);
       for (std::size_t i = 0; i < texels; ++i) {
-        const std::size_t index = (static_cast<std::size_t>(layer) * texels + i) * 4 + channel;
         const int x = static_cast<int>(i) % map.width, y = static_cast<int>(i) / map.width;
-        count_check(certificate, maxima[i] - static_cast<double>(map.texels[index]), options.tolerance, x, y, 0, layer);
+        const std::size_t index = (static_cast<std::size_t>(layer) * texels + i) * 4 + static_cast<std::size_t>(channel);
+        const Bytes bytes = unpack(map.texels[index]);
+        count_check(certificate, maxima[i] - bytes.window - rounding, options.tolerance, x, y, 0, layer);
+        const double corner =
+            height_map.at(wrap_texel(x + ((channel & 1) != 0 ? !before_x : before_x), map.width, map.address),
+                          wrap_texel(y + ((channel & 2) != 0 ? !before_y : before_y), map.height, map.address));
+        count_check(certificate, corner - bytes.corner - rounding, options.tolerance, x, y, 0, layer);
       }
     }
   }
@@ -83,6 +101,8 @@ Status check(const HeightMap& height_map, const MapData& map, const CertifyOptio
 }  // namespace
 
 extern const Certifier quadrant_maxima;
-const Certifier quadrant_maxima = {"no corner of a cell in a window is above the window's value (H)", check};
+const Certifier quadrant_maxima = {
+    "no corner of a cell in a window is above the window's value, nor one of the cell above its own, by more than 2^-22 (H)",
+    check};
 
 }  // namespace relievo::certifiers

@@ -8,7 +8,7 @@ struct PackedRay {
   vec4 direction;     // du, dv, dH, unused
 };
 
-struct PackedHit {
+struct PackedHit {  // what is not written is zero
   int status;
   float t, u, v, h;
   uint steps, fetches, unused;
@@ -38,9 +38,13 @@ void main() {
   Hit hit = Hit(RELIEVO_MISS, 0.0, ray.origin);
   if (relievo_is_valid(ray)) hit = relievo_view_trace(ray);
   hit = relievo_sanitized(ray, hit);
+  hits[index].status = hit.status;
+  hits[index].t = hit.t;
+  hits[index].u = hit.point.x;
+  hits[index].v = hit.point.y;
+  hits[index].h = hit.point.z;
 #if RELIEVO_COUNT
-  hits[index] = PackedHit(hit.status, hit.t, hit.point.x, hit.point.y, hit.point.z, relievo_steps, relievo_fetches, 0u);
-#else
-  hits[index] = PackedHit(hit.status, hit.t, hit.point.x, hit.point.y, hit.point.z, 0u, 0u, 0u);
+  hits[index].steps = relievo_steps;
+  hits[index].fetches = relievo_fetches;
 #endif
 }

@@ -9,7 +9,7 @@
 // they are quicker: floats that are not negative are ordered as their bits are.
 #include "shaders/lib/walk_search.glsl"
 
-const float QUADRANT_MAXIMA_REACH = 512.0;      // s: a glide goes no further
+const float QUADRANT_MAXIMA_REACH = 512.0;      // s: a glide goes no further, nor beyond a period
 const float QUADRANT_MAXIMA_ROUNDING = 2.5e-6;  // of H, a unit of s: see README.md
 const float QUADRANT_MAXIMA_DECODING = 6.0e-5;  // of H: a corner can be read so much too low
 const float QUADRANT_MAXIMA_MARGIN = 2.0e-7;    // s a unit of s, to get across a border
@@ -53,7 +53,8 @@ Glide quadrant_maxima_glide(Walk walk, vec2 s) {
   glide.u = u;
   glide.v = v;
   glide.cell = cell;
-  float reach = min(min(walk.extent.x, walk.extent.y) - 0.5, QUADRANT_MAXIMA_REACH);
+  precise vec2 period = (walk.extent - 0.5) * walk.pace;
+  float reach = min(min(period.x, period.y), QUADRANT_MAXIMA_REACH);
   glide.left = min(relievo_walk_left(walk, s), reach);
   precise float top = place.height - (QUADRANT_MAXIMA_ROUNDING * glide.left + QUADRANT_MAXIMA_DECODING);
   glide.top_window = RELIEVO_QUADRANT_WINDOW_UNIT * top;
@@ -75,18 +76,21 @@ QuadrantMaxima quadrant_maxima_ahead(Walk walk, Glide glide, ivec2 passed) {
 #endif
 }
 
-// The patch along a ray that crosses its cell from `place` (clear of the near corner in cells, height), in corner units, is a
-// quadratic whose control points bound it: the bits of a number that is not negative if the ray stays above all three.
+// The patch along a ray that crosses its cell is a quadratic, which its control points bound: the corners weighted
+// by where the ray is, by where it leaves, and by one of either in u and the other in v. Returned is a number whose sign bit is
+// set unless the ray stays above all three. Heights in corner units.
 int quadrant_maxima_clears(vec4 corners, vec3 place, vec3 way) {
-  precise float du = corners.y - corners.x;
-  precise float dv = corners.z - corners.x;
-  precise float twist = (corners.w - corners.z) - du;
-  precise float a = place.z - (corners.x + du * place.x + (dv + twist * place.x) * place.y);
-  precise float b = way.z - (du * way.x + dv * way.y + twist * (place.x * way.y + place.y * way.x));
-  precise float c = -twist * way.x * way.y;
-  precise float middle = a + 0.5 * b;
-  precise float end = (a + b) + c;
-  return floatBitsToInt(a) | floatBitsToInt(middle) | floatBitsToInt(end);
+  precise vec3 end = place + way;
+  precise vec4 at = vec4(1.0 - place.xy, place.xy), left = vec4(1.0 - end.xy, end.xy);
+  precise vec4 first = at.xzxz * at.yyww, last = left.xzxz * left.yyww;
+  precise vec4 twice_middle = at.xzxz * left.yyww + left.xzxz * at.yyww;
+  first *= corners;
+  twice_middle *= corners;
+  last *= corners;
+  precise float a = place.z - ((first.x + first.y) + (first.z + first.w));
+  precise float b = (place.z + end.z) - ((twice_middle.x + twice_middle.y) + (twice_middle.z + twice_middle.w));
+  precise float c = end.z - ((last.x + last.y) + (last.z + last.w));
+  return floatBitsToInt(a) | floatBitsToInt(b) | floatBitsToInt(c);
 }
 
 // The s that the ray may go to from `s`, in bits; `border`: where it leaves the cell.
@@ -114,20 +118,23 @@ int quadrant_maxima_free(Walk walk, Glide glide, GlidePace pace, float s, out in
   precise float clearance = height + min(way.z, 0.0) - highest;
   int clears = floatBitsToInt(clearance);
 #endif
-  return max(max(max(free.x, free.y), max(free.z, free.w)), clears < 0 ? clears : border);
+  return max(max(max(free.x, free.y), max(free.z, free.w)), border | (clears >> 31));
 }
 
 // Glides on from `s`; false when it is at the glide's end. True: nothing lets the ray through there.
 bool quadrant_maxima_is_blocked(Walk walk, Glide glide, GlidePace pace, inout int steps, inout float s) {
   bool is_blocked;
+  float from;
   do {
     --steps;
     RELIEVO_COUNT_STEP();
     int border;
     int free = quadrant_maxima_free(walk, glide, pace, s, border);
     is_blocked = free < max(border, floatBitsToInt(s));
-    s = is_blocked ? s : intBitsToFloat(free) + glide.margin;
+    from = s;
+    s = intBitsToFloat(free) + glide.margin;
   } while (!is_blocked && s < glide.left && steps > 0);
+  s = is_blocked ? from : s;
   return is_blocked;
 }
 

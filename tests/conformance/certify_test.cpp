@@ -13,7 +13,14 @@ struct Case {
 };
 
 std::vector<int> bits_of(const MapDescriptor& descriptor) {
-  return descriptor.rounding.empty() ? std::vector<int>{32} : std::vector<int>{8, 16, 32};
+  if (descriptor.rounding.empty()) return {32};
+  std::vector<int> result;
+  for (const Parameter& parameter : descriptor.parameters) {
+    for (const int bits : {8, 16, 32}) {
+      if (parameter.name == "bits" && parameter.minimum <= bits && bits <= parameter.maximum) result.push_back(bits);
+    }
+  }
+  return result;
 }
 
 /// Such a map takes as many bits as its heights need.

@@ -17,8 +17,8 @@ BackendInfo null_info() {
   info.driver = "none";
   info.api_version = "1";
   info.shader_target = "spirv";
-  info.features = {"compute",  "depth_write",  "dynamic_loops", "explicit_lod",  "gather",
-                   "geometry", "tessellation", "texture_3d",    "vertex_texture"};
+  info.features = {"compute",  "depth_write",  "dynamic_loops", "explicit_lod",   "gather",
+                   "geometry", "tessellation", "texture_3d",    "vertex_texture", "extended_images"};
   return info;
 }
 

@@ -30,8 +30,9 @@ BackendInfo read_info(const Limits& limits) {
   info.device = gl_string(GL_RENDERER);
   info.driver = gl_string(GL_VENDOR);
   info.api_version = gl_string(GL_VERSION);
-  info.features = {"compute",        "geometry",      "tessellation", "explicit_lod",   "texture_3d", "gather",
-                   "vertex_texture", "dynamic_loops", "depth_write",  "linear_float32", "validation"};
+  info.features = {"compute",     "geometry",       "tessellation",   "explicit_lod",
+                   "texture_3d",  "gather",         "vertex_texture", "dynamic_loops",
+                   "depth_write", "linear_float32", "validation",     "extended_images"};
   if (limits.timestamp_bits > 0) info.features.insert("timestamps");
   info.max_storage_buffer = static_cast<std::size_t>(limits.storage_block_size);
   return info;

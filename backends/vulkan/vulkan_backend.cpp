@@ -33,6 +33,7 @@ BackendInfo info_of(const DeviceTraits& device) {
   info.api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
                                  VK_API_VERSION_PATCH(version));
   info.features = {"compute", "depth_write", "dynamic_loops", "explicit_lod", "gather", "texture_3d", "vertex_texture"};
+  if (device.features.shaderStorageImageExtendedFormats) info.features.insert("extended_images");
   if (device.features.geometryShader) info.features.insert("geometry");
   if (device.features.tessellationShader) info.features.insert("tessellation");
   if (device.timestamp_bits > 0) info.features.insert("timestamps");

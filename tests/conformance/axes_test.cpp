@@ -92,6 +92,20 @@ TEST(Axes, GatheredHeightsGiveTheSameHits) {
   }
 }
 
+/// The same texels, so the same hits in every bit.
+TEST(Axes, AMapReadAsAnImageGivesTheSameHits) {
+  for (const AddressMode mode : all_address_modes) {
+    const HeightMap map = with_address(white_noise_map(7, 13), mode);
+    const std::vector<Ray> rays = bounded_rays(map, 2000, 13);
+    for (const std::string& backend : both_backends) {
+      const auto hits = [&](double fetch) {
+        return trace_on(backend, map, rays, request_of("quadrant_maxima", {{"quadrant_maxima.fetch", fetch}}));
+      };
+      EXPECT_EQ(count_different(hits(0), hits(1)), 0u) << to_string(mode) << " on " << backend;
+    }
+  }
+}
+
 TEST(Axes, NormalsFromHeightsAreThoseOfTheMap) {
   for (const std::string stage : {"surface", "prism", "vertex"}) {
     for (const std::string& backend : both_backends) {

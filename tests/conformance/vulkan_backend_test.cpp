@@ -48,7 +48,7 @@ TEST(VulkanInfo, NamesDeviceDriverAndFeatures) {
   EXPECT_THAT(info.api_version, testing::StartsWith("1.3."));
   for (const char* feature :
        {"compute", "geometry", "tessellation", "explicit_lod", "texture_3d", "gather", "vertex_texture",
-        "dynamic_loops", "depth_write", "timestamps", "linear_float32", "validation"}) {
+        "dynamic_loops", "depth_write", "timestamps", "linear_float32", "validation", "extended_images"}) {
     EXPECT_THAT(info.features, Contains(feature));
   }
 }

@@ -80,6 +80,17 @@ TEST(CompileCapabilities, AnUndeclaredGatherIsFoundInTheSpirv) {
   EXPECT_EQ(refusal(fragment_program(kGather), "essl-310").id, "");
 }
 
+TEST(CompileCapabilities, AnImageFormatThatEsslLacksIsFoundInTheSpirv) {
+  const ComposedProgram program = fragment_program(R"(
+layout(location = 0) out vec4 color;
+layout(set = 1, binding = 0, rgba16) readonly uniform highp image2D map;
+void main() { color = imageLoad(map, ivec2(0)); }
+)");
+  EXPECT_EQ(refusal(program, "essl-310").id, "capability.extended-images");
+  EXPECT_EQ(refusal(program, "glsl-330").id, "capability.extended-images");
+  for (const char* target : {"glsl-430", "hlsl-5.0", "msl-2.2"}) EXPECT_EQ(refusal(program, target).id, "") << target;
+}
+
 TEST(CompileCapabilities, AStorageBufferInAFragmentShaderIsFoundInTheSpirv) {
   const ComposedProgram program = fragment_program(R"(
 layout(location = 0) out vec4 color;

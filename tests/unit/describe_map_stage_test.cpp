@@ -32,6 +32,14 @@ TEST(ParseMap, ReadsWithWhichAddressModesLayersAreApart) {
   EXPECT_EQ(map->layers_apart, (std::vector<std::string>{"clip", "repeat"}));
 }
 
+TEST(ParseMap, ReadsTheFormatOfAnImage) {
+  const std::string axis =
+      "\n[axes.fetch]\ntitle = \"t\"\nvalues = [\"texture\", \"image\"]\ndefault = \"texture\"\nbinding = \"macro\"\n";
+  const auto map = parse_map(with(examples::map, "sampler =", "image = \"rgba16\"\nsampler =") + axis, map_path);
+  ASSERT_TRUE(map) << format(map.error());
+  EXPECT_EQ(map->image, "rgba16");
+}
+
 TEST(ParseMap, AllowsAProvidedMapWithoutAModule) {
   const auto map = parse_map(examples::provided_map, "shaders/maps/height/map.toml");
   ASSERT_TRUE(map) << format(map.error());
@@ -88,6 +96,9 @@ const Fault map_faults[] = {
     {"TextChannels", "channels = 3", "channels = \"three\"", "describe.type", 5, 12, "the string \"three\""},
     {"UnknownAddressOfLayersApart", "channels = 3", "channels = 3\nlayers_apart = [\"wrap\"]", "describe.range", 6, 17,
      "\"wrap\", which is not known"},
+    {"UnknownImageFormat", "sampler =", "image = \"rgb9\"\nsampler =", "describe.range", 6, 9, "rgb9"},
+    {"ImageWithoutItsAxis", "sampler =", "image = \"rgba8\"\nsampler =", "describe.map-parameter", 1, 1,
+     "an axis \"fetch\" with the value \"image\""},
     {"MissingSampler", "sampler = \"relievo_normal_map\"\n", "", "describe.missing-key", 1, 1, "\"sampler\""},
     {"BadSampler", "\"relievo_normal_map\"", "\"a-b\"", "describe.name", 6, 11, "GLSL identifier"},
     {"ReservedSampler", "\"relievo_normal_map\"", "\"gl_map\"", "describe.name", 6, 11, "\"gl_map\""},

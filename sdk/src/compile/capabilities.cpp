@@ -38,6 +38,7 @@ constexpr Rule kTable[] = {
     {"depth_write",      kAnyStage,            "depth writes",           false, kAll,   kAll,   kAll,   kAll},
     {"storage_buffer",   kAnyStage,            "storage buffers",        false, 430,    310,    kAll,   kAll},
     {"storage_image",    kAnyStage,            "storage images",         false, 420,    310,    kAll,   kAll},
+    {"extended_images",  kAnyStage,            "storage images of all formats",  false, 420, kNever, kAll, kAll},
     {"storage_write",    ShaderStage::vertex,  "storage writes in vertex shaders", false, 430, 310, 51, kAll},
     {"query_lod",        kAnyStage,            "textureQueryLod",        false, 400,    kNever, kAll,   22},
     {"query_levels",     kAnyStage,            "textureQueryLevels",     false, 430,    kNever, kAll,   kAll},
@@ -118,7 +119,9 @@ std::string_view feature_of(const SpirvInstruction& instruction) {
     case spv::OpImageQueryLevels:
       return "query_levels";
     case spv::OpCapability:
-      return instruction.operands[0] == spv::CapabilityFloat64 ? "float64" : std::string_view{};
+      if (instruction.operands[0] == spv::CapabilityFloat64) return "float64";
+      if (instruction.operands[0] == spv::CapabilityStorageImageExtendedFormats) return "extended_images";
+      return {};
     default:
       return {};
   }

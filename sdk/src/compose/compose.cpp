@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 
 #include "compose/include.hpp"
 #include "compose/resolve.hpp"
@@ -30,12 +31,21 @@ std::string axis_macros(HeightFilter filter, AddressMode address, bool count, Ao
   return text;
 }
 
+std::string declare_map(const MapDescriptor& map) {
+  constexpr std::array<std::string_view, 3> kinds = {"2D", "2DArray", "3D"};
+  const std::string_view kind = kinds[static_cast<std::size_t>(map.dimension)];
+  const std::string place = fmt::format("set = {}, binding = {}", map.set, map.binding);
+  const std::string texture = fmt::format("layout({}) uniform highp sampler{} {};\n", place, kind, map.sampler);
+  if (map.image.empty()) return texture;
+  return fmt::format(
+      "#if {0}_fetch == {0}_fetch_image\nlayout({1}, {2}) readonly uniform highp image{3} {4};\n#else\n{5}#endif\n",
+      map.name, place, map.image, kind, map.sampler, texture);
+}
+
 Result<std::string> declare_maps(const std::vector<const MapDescriptor*>& maps, SourceExpander& expander) {
   std::string text;
   for (const MapDescriptor* map : maps) {
-    constexpr const char* samplers[] = {"sampler2D", "sampler2DArray", "sampler3D"};
-    text += fmt::format("layout(set = {}, binding = {}) uniform highp {} {};\n", map->set, map->binding,
-                        samplers[static_cast<int>(map->dimension)], map->sampler);
+    text += declare_map(*map);
     if (map->access.empty()) continue;
     Result<std::string> access = expander.expand(map->access);
     if (!access) return access;

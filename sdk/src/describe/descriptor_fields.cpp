@@ -93,8 +93,9 @@ std::string_view to_string(BindingTime time) {
 }
 
 const FeatureSet& known_features() {
-  static const FeatureSet features = {"dynamic_loops", "explicit_lod", "texture_3d",     "gather",     "geometry",
-                                      "tessellation",  "compute",      "vertex_texture", "depth_write"};
+  static const FeatureSet features = {"dynamic_loops", "explicit_lod",   "texture_3d", "gather",
+                                      "geometry",      "tessellation",   "compute",    "vertex_texture",
+                                      "depth_write",   "extended_images"};
   return features;
 }
 

@@ -12,6 +12,8 @@ namespace {
 constexpr std::array<std::string_view, 2> level_names = {"single", "pyramid"};
 constexpr std::array<std::string_view, 3> dimension_names = {"2d", "2d_array", "3d"};
 constexpr std::array<std::string_view, 4> rounding_names = {"nearest", "up", "down", "exact"};
+constexpr std::array<std::string_view, 9> image_formats = {"r8",     "rg8",  "rgba8", "r16",    "rg16",
+                                                           "rgba16", "r32f", "rg32f", "rgba32f"};
 constexpr int max_layers = 256;
 
 bool is_glsl_identifier(std::string_view name) {
@@ -86,10 +88,10 @@ void read_rounding(TomlReader& reader, MapDescriptor& map) {
 }
 
 void read_map(TomlReader& reader, MapDescriptor& map) {
-  reader.allow_keys({"schema",       "name",     "title",      "source",  "summary",          "inputs",
-                     "channels",     "levels",   "dimension",  "layers",  "layers_parameter", "passes",
-                     "layers_apart", "rounding", "sampler",    "binding", "module",           "access",
-                     "features",     "loops",    "parameters", "axes"});
+  reader.allow_keys({"schema",     "name",      "title",   "source",           "summary", "inputs",       "channels",
+                     "levels",     "dimension", "layers",  "layers_parameter", "passes",  "layers_apart", "rounding",
+                     "sampler",    "image",     "binding", "module",           "access",  "features",     "loops",
+                     "parameters", "axes"});
   map.inputs = reader.names("inputs");
   map.channels = reader.integer("channels", 1, 4);
   map.levels = reader.choice_of<MapLevels>("levels", level_names, MapLevels::single);
@@ -98,6 +100,7 @@ void read_map(TomlReader& reader, MapDescriptor& map) {
   if (reader.has("passes")) map.passes = reader.integer("passes", 1, max_layers);
   map.layers_apart = reader.choices("layers_apart", {"repeat", "mirror", "clamp", "clip"}, "describe.range");
   map.sampler = read_sampler(reader);
+  if (reader.has("image")) map.image = image_formats[reader.choice("image", image_formats, 0)];
   read_binding(reader, map);
   map.module = reader.path_or_empty("module");
   map.access = reader.path_or_empty("access");
@@ -136,6 +139,19 @@ Status check_host_parameter(const MapDescriptor& map, std::string_view name, int
       map.file, is_there ? found->line : 1, 1);
 }
 
+/// A map that can be read as an image has the axis that says whether it is.
+Status check_image(const MapDescriptor& map) {
+  if (map.image.empty()) return {};
+  for (const Parameter& parameter : map.parameters) {
+    const auto& choices = parameter.choices;
+    if (parameter.name == "fetch" && std::find(choices.begin(), choices.end(), "image") != choices.end()) return {};
+  }
+  return fail(
+      ErrorCode::usage, "describe.map-parameter",
+      fmt::format("map {} has the key \"image\" but lacks an axis \"fetch\" with the value \"image\"", quote(map.name)),
+      map.file, 1, 1);
+}
+
 }  // namespace
 
 Result<MapDescriptor> parse_map(std::string_view text, const std::string& path) {
@@ -148,6 +164,7 @@ Result<MapDescriptor> parse_map(std::string_view text, const std::string& path) 
   if (!map->rounding.empty()) {
     if (Status status = check_host_parameter(*map, "bits", 32); !status) return tl::unexpected(status.error());
   }
+  if (Status status = check_image(*map); !status) return tl::unexpected(status.error());
   return map;
 }
 

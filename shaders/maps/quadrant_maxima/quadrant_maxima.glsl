@@ -13,7 +13,12 @@ const float RELIEVO_QUADRANT_CORNER_UNIT = 255.0 / 256.0;
 // A channel holds a window's byte above a corner's: as a whole and a fraction.
 QuadrantMaxima relievo_quadrant_maxima_at(ivec2 cell, int quadrant) {
   RELIEVO_COUNT_FETCHES(1);
-  precise vec4 both = texelFetch(relievo_quadrant_maxima_map, ivec3(cell, quadrant), 0) * (65535.0 / 256.0);
+#if quadrant_maxima_fetch == quadrant_maxima_fetch_image
+  vec4 texel = imageLoad(relievo_quadrant_maxima_map, ivec3(cell, quadrant));
+#else
+  vec4 texel = texelFetch(relievo_quadrant_maxima_map, ivec3(cell, quadrant), 0);
+#endif
+  precise vec4 both = texel * (65535.0 / 256.0);
   vec4 windows = floor(both);
   precise vec4 corners = both - windows;
   return QuadrantMaxima(windows, corners);

@@ -131,14 +131,17 @@ vec2 relievo_walk_on(vec2 s, float distance) {
 // A walk that has come far starts anew where it is, with s = 0.
 bool relievo_walk_is_far(vec2 s) { return s.x >= 32768.0; }
 
-void relievo_walk_rebase(inout Walk walk, inout vec2 s) {
-  WalkPlace place = relievo_walk_place(walk, s);
+void relievo_walk_rebase_to(WalkPlace place, inout Walk walk, inout vec2 s) {
   walk.base_t = relievo_walk_t(walk, s);
   walk.end -= s.x + s.y;
   walk.base_cell = relievo_fold_to_first_period(place.cell, walk.extent);
   walk.base_fraction = place.fraction;
   walk.base_height = place.height;
   s = vec2(0.0);
+}
+
+void relievo_walk_rebase(inout Walk walk, inout vec2 s) {
+  relievo_walk_rebase_to(relievo_walk_place(walk, s), walk, s);
 }
 
 // How far it still is to the end of the interval.

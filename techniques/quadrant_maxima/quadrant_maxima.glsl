@@ -150,10 +150,10 @@ Hit quadrant_maxima_trace(Ray ray) {
     bool is_blocked = quadrant_maxima_is_blocked(walk, quadrant_maxima_glide(walk, search.s), pace, search.steps, on);
     search.s = relievo_walk_on(search.s, on);
     on = 0.0;
-    if (relievo_walk_is_far(search.s)) relievo_walk_rebase(walk, search.s);
+    WalkPlace place = relievo_walk_place(walk, search.s);
+    if (relievo_walk_is_far(search.s)) relievo_walk_rebase_to(place, walk, search.s);
     if (is_blocked) {
       // The next glide starts here and not behind the cell, so that it need not wait for the solution to be prepared.
-      WalkPlace place = relievo_walk_place(walk, search.s);
       float border = relievo_search_cell(walk, place, relievo_cell_corners_at(place.cell, walk.extent), search);
       on = border + RELIEVO_WALK_MARGIN;
     }

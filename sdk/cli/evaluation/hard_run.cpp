@@ -75,9 +75,9 @@ std::map<std::string, double> values_of(const HardInput& input, const Group& gro
   std::map<std::string, double> values = input.values;
   if (group.bits != 0) {
     for (const auto& [name, map] : input.registry->maps) {
+      if (map.rounding.empty()) continue;
       for (const Parameter& p : map.parameters) {
-        if (p.name == "bits" && !map.rounding.empty())
-          values[name + ".bits"] = std::clamp<double>(group.bits, p.minimum, p.maximum);
+        if (p.name == "bits") values[name + ".bits"] = std::clamp<double>(group.bits, p.minimum, p.maximum);
       }
     }
   }

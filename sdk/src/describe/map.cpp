@@ -127,10 +127,14 @@ std::string_view to_string(Rounding rounding) {
 
 namespace {
 
+auto find_parameter(const MapDescriptor& map, std::string_view name) {
+  return std::find_if(map.parameters.begin(), map.parameters.end(),
+                      [&](const Parameter& parameter) { return parameter.name == name; });
+}
+
 /// What the host reads from the map's own parameters: the number of layers and of bits.
 Status check_host_parameter(const MapDescriptor& map, std::string_view name, int most) {
-  auto found = std::find_if(map.parameters.begin(), map.parameters.end(),
-                            [&](const Parameter& parameter) { return parameter.name == name; });
+  const auto found = find_parameter(map, name);
   const bool is_there = found != map.parameters.end();
   if (is_there && found->is_integer && found->minimum >= 1 && found->maximum <= most) return {};
   return fail(
@@ -142,10 +146,10 @@ Status check_host_parameter(const MapDescriptor& map, std::string_view name, int
 /// A map that can be read as an image has the axis that says whether it is.
 Status check_image(const MapDescriptor& map) {
   if (map.image.empty()) return {};
-  for (const Parameter& parameter : map.parameters) {
-    const auto& choices = parameter.choices;
-    if (parameter.name == "fetch" && std::find(choices.begin(), choices.end(), "image") != choices.end()) return {};
-  }
+  const auto fetch = find_parameter(map, "fetch");
+  if (fetch != map.parameters.end() &&
+      std::find(fetch->choices.begin(), fetch->choices.end(), "image") != fetch->choices.end())
+    return {};
   return fail(
       ErrorCode::usage, "describe.map-parameter",
       fmt::format("map {} has the key \"image\" but lacks an axis \"fetch\" with the value \"image\"", quote(map.name)),

@@ -33,7 +33,7 @@ vec4 quadrant_maxima_bytes(vec4 heights) { return clamp(ceil(heights * 255.0 - 2
 void quadrant_maxima_pack(ivec2 texel) {
   int quadrant = relievo_bake_layer();
   vec4 windows;
-  for (int k = 0; k < 4; ++k) windows[k] = relievo_bake_read(texel, quadrant, k + 1 & 3);
+  for (int k = 0; k < 4; ++k) windows[k] = relievo_bake_read(texel, quadrant, (k + 1) & 3);
   vec4 corners = relievo_bake_corners(texel);
   ivec2 heading = relievo_heading(quadrant);
   if (heading.x < 0) corners = corners.yxwz;

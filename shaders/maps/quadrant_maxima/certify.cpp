@@ -89,8 +89,8 @@ Status check(const HeightMap& height_map, const MapData& map, const CertifyOptio
         const Bytes bytes = unpack(map.texels[index]);
         count_check(certificate, maxima[i] - bytes.window - rounding, options.tolerance, x, y, 0, layer);
         const double corner =
-            height_map.at(wrap_texel(x + ((channel & 1) != 0 ? !before_x : before_x), map.width, map.address),
-                          wrap_texel(y + ((channel & 2) != 0 ? !before_y : before_y), map.height, map.address));
+            height_map.at(wrap_texel(x + (((channel & 1) != 0) != before_x), map.width, map.address),
+                          wrap_texel(y + (((channel & 2) != 0) != before_y), map.height, map.address));
         count_check(certificate, corner - bytes.corner - rounding, options.tolerance, x, y, 0, layer);
       }
     }

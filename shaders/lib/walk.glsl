@@ -83,20 +83,20 @@ bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk)
   walk.base_height = relievo_entry_point(ray, interval).z;
   walk.base_t = interval.enter;
 
+  // A power of two, by which nothing is rounded.
   float speed = max(max(max(abs(way.x), abs(way.y)), abs(ray.direction.z)), 1.0e-30);
-  precise vec2 slope = way / speed;
-  vec2 back, back_error;
-  relievo_two_product(slope, vec2(speed), back, back_error);
-  precise vec2 slope_error = (((way - back) - back_error) + way_error) / speed;
+  int power = (floatBitsToInt(speed) + 0x007fffff) & 0x7f800000;
+  float s_per_t = intBitsToFloat(power), t_per_s = intBitsToFloat(0x7f000000 - power);
+  vec2 slope = way * t_per_s;
   precise vec2 split = 32769.0 * slope;
   precise vec2 lead = split - (split - slope);
-  precise vec2 small = (slope - lead) + slope_error;
+  precise vec2 small = (slope - lead) + way_error * t_per_s;
   walk.lead = lead;
   walk.rest = small;
   walk.slope = slope;
-  walk.rise = ray.direction.z / speed;
-  walk.t_per_s = 1.0 / speed;
-  precise float end = (interval.exit - interval.enter) * speed;
+  walk.rise = ray.direction.z * t_per_s;
+  walk.t_per_s = t_per_s;
+  precise float end = (interval.exit - interval.enter) * s_per_t;
   walk.end = end;
   walk.heading = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(slope, vec2(0.0)));
   walk.behind_at_zero = mix(vec2(1.0), vec2(0.0), greaterThanEqual(slope, vec2(0.0)));

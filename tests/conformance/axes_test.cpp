@@ -106,6 +106,28 @@ TEST(Axes, AMapReadAsAnImageGivesTheSameHits) {
   }
 }
 
+/// Rays and hits are the same words in images; numbers of rays that fill no row, one row, and more; counted and not.
+TEST(Axes, RaysInImagesGiveTheSameHits) {
+  const HeightMap map = white_noise_map(7, 13);
+  for (const std::string& backend : both_backends) {
+    for (const std::size_t count : {std::size_t{1}, std::size_t{64}, std::size_t{4097}}) {
+      const std::vector<Ray> rays = bounded_rays(map, static_cast<int>(count), 17);
+      for (const bool count_cost : {false, true}) {
+        const auto hits = [&](double storage) {
+          TraceRequest request = request_of("exact", {{"ray.storage", storage}});
+          request.count_cost = count_cost;
+          return trace_on(backend, map, rays, request);
+        };
+        const std::vector<Hit> buffers = hits(0), images = hits(1);
+        EXPECT_EQ(count_different(buffers, images), 0u) << count << " rays on " << backend;
+        EXPECT_EQ(buffers.back().steps > 0, count_cost) << count << " rays on " << backend;
+        EXPECT_EQ(buffers.back().steps, images.back().steps);
+        EXPECT_EQ(buffers.back().fetches, images.back().fetches);
+      }
+    }
+  }
+}
+
 TEST(Axes, NormalsFromHeightsAreThoseOfTheMap) {
   for (const std::string stage : {"surface", "prism", "vertex"}) {
     for (const std::string& backend : both_backends) {

@@ -2,9 +2,12 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "job/program.hpp"
 #include "relievo/trace.hpp"
@@ -13,20 +16,29 @@ namespace relievo {
 
 namespace {
 
-/// Twins of the structures in shaders/stages/ray/ray.glsl.
-struct PackedRay {
-  float u, v, h, t_max;
-  float du, dv, dh, unused;
-};
-struct PackedHit {
-  std::int32_t status;
-  float t, u, v, h;
-  std::uint32_t steps, fetches, unused;
-};
-static_assert(sizeof(PackedRay) == 32 && sizeof(PackedHit) == 32);
-
 constexpr int batch_binding = 1, rays_binding = 2, hits_binding = 3;
-constexpr std::uint32_t group_size = 64, widest_row = 32768;
+constexpr std::uint32_t group_size = 64, widest_row = 4096;
+
+/// The rays of a set in rows of whole workgroups. Components of rays and hits are stored one after the other, each for
+/// the whole grid: as planes of a buffer or as layers of an image, which is the same in bytes.
+struct RayGrid {
+  std::uint32_t width = 0, height = 0;
+  std::size_t size() const { return std::size_t{width} * height; }
+};
+
+RayGrid grid_of(std::size_t rays) {
+  const std::size_t padded = (rays + group_size - 1) / group_size * group_size;
+  const std::size_t width = std::min<std::size_t>(padded, widest_row);
+  return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>((padded + width - 1) / width)};
+}
+
+/// Twins of what shaders/stages/ray/ray.glsl reads and writes. A ray has vectors of four floats, a hit words.
+constexpr std::size_t ray_vectors = 2, vector_size = 4 * sizeof(float);
+enum HitWord { status_word, t_word, u_word, v_word, h_word, steps_word, fetches_word };
+
+std::size_t hit_words(bool count_cost) {
+  return count_cost ? fetches_word + 1 : h_word + 1;
+}
 
 /// Whole tiles that a coordinate can shed without changing what it reads (lib/address.glsl has the twin).
 double tile_of(double coordinate, AddressMode address) {
@@ -48,40 +60,49 @@ float limit_to_float(double t_max) {
   return to_float(t_max > largest_float ? largest_float : t_max);
 }
 
-PackedRay pack(const Ray& ray, AddressMode address) {
-  return {to_float(ray.u - tile_of(ray.u, address)),
-          to_float(ray.v - tile_of(ray.v, address)),
-          to_float(ray.h),
-          limit_to_float(ray.t_max),
-          to_float(ray.du),
-          to_float(ray.dv),
-          to_float(ray.dh),
-          0};
+using RayVectors = std::array<std::array<float, 4>, ray_vectors>;
+
+RayVectors pack(const Ray& ray, AddressMode address) {
+  return {{{to_float(ray.u - tile_of(ray.u, address)), to_float(ray.v - tile_of(ray.v, address)), to_float(ray.h),
+            limit_to_float(ray.t_max)},
+           {to_float(ray.du), to_float(ray.dv), to_float(ray.dh), 0}}};
 }
+
+std::vector<std::byte> pack_rays(std::span<const Ray> rays, AddressMode address) {
+  const std::size_t stride = grid_of(rays.size()).size() * vector_size;
+  std::vector<std::byte> packed(ray_vectors * stride);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const RayVectors vectors = pack(rays[i], address);
+    for (std::size_t k = 0; k < ray_vectors; ++k)
+      std::memcpy(packed.data() + k * stride + i * vector_size, vectors[k].data(), vector_size);
+  }
+  return packed;
+}
+
+/// The words of one hit in a read-back.
+struct PackedHit {
+  std::span<const std::byte> read_back;
+  std::size_t stride, index;  ///< words
+
+  std::uint32_t word(HitWord which) const {
+    const std::size_t offset = (static_cast<std::size_t>(which) * stride + index) * sizeof(std::uint32_t);
+    std::uint32_t value = 0;
+    if (offset < read_back.size()) std::memcpy(&value, read_back.data() + offset, sizeof value);
+    return value;
+  }
+  float number(HitWord which) const { return std::bit_cast<float>(word(which)); }
+};
 
 Hit unpack(const PackedHit& packed, const Ray& ray, AddressMode address) {
   Hit hit;
-  hit.status = static_cast<HitStatus>(packed.status);
-  hit.t = packed.t;
-  hit.u = packed.u + tile_of(ray.u, address);
-  hit.v = packed.v + tile_of(ray.v, address);
-  hit.h = packed.h;
-  hit.steps = packed.steps;
-  hit.fetches = packed.fetches;
+  hit.status = static_cast<HitStatus>(packed.word(status_word));
+  hit.t = packed.number(t_word);
+  hit.u = packed.number(u_word) + tile_of(ray.u, address);
+  hit.v = packed.number(v_word) + tile_of(ray.v, address);
+  hit.h = packed.number(h_word);
+  hit.steps = packed.word(steps_word);
+  hit.fetches = packed.word(fetches_word);
   return hit;
-}
-
-Buffer pack_rays(std::span<const Ray> rays, AddressMode address) {
-  std::vector<PackedRay> packed;
-  packed.reserve(rays.size());
-  for (const Ray& ray : rays) packed.push_back(pack(ray, address));
-  return make_buffer("Rays", packed.data(), packed.size() * sizeof(PackedRay));
-}
-
-std::array<std::uint32_t, 3> groups_for(std::size_t rays) {
-  std::uint32_t groups = static_cast<std::uint32_t>((rays + group_size - 1) / group_size);
-  std::uint32_t row = std::min(groups, widest_row);
-  return {row, (groups + row - 1) / row, 1};
 }
 
 /// The programs of a job. Permutations that differ in uniform values alone share one: it is compiled once, by us and by
@@ -121,44 +142,101 @@ Permutation permutation_of(const TraceRequest& request, AddressMode address) {
   return permutation;
 }
 
+/// Where a request wants its rays and hits: the axis `ray.storage`.
+enum class RayStorage { buffer, image };
+
+RayStorage storage_of(const ComposedProgram& composed) {
+  const auto slot = std::find_if(composed.parameters.begin(), composed.parameters.end(),
+                                 [](const ParameterSlot& p) { return p.name == "ray.storage"; });
+  return slot != composed.parameters.end() && slot->value == 1 ? RayStorage::image : RayStorage::buffer;
+}
+
 /// The dispatch of one request without its rays and hits.
-Result<Dispatch> make_dispatch(const Registry& registry, const MapSet& maps, const TraceRequest& request,
-                               std::string_view shader_target, SharedPrograms& programs, Job& job) {
+struct RequestDispatch {
+  Dispatch dispatch;
+  RayStorage storage = RayStorage::buffer;
+  bool count_cost = false;
+};
+
+Result<RequestDispatch> make_dispatch(const Registry& registry, const MapSet& maps, const TraceRequest& request,
+                                      std::string_view shader_target, SharedPrograms& programs, Job& job) {
   Result<ComposedProgram> composed =
       compose_known(registry, permutation_of(request, maps.find("height")->second.address));
   if (!composed) return tl::unexpected(composed.error());
   Result<int> program = programs.index_of(*composed, shader_target, job);
   if (!program) return tl::unexpected(program.error());
-  Dispatch dispatch;
-  dispatch.program = *program;
-  bind_maps(*composed, maps, job, dispatch.resources);
-  bind_parameters(*composed, job, dispatch.resources);
-  return dispatch;
+  RequestDispatch made{{}, storage_of(*composed), request.count_cost};
+  made.dispatch.program = *program;
+  bind_maps(*composed, maps, job, made.dispatch.resources);
+  bind_parameters(*composed, job, made.dispatch.resources);
+  return made;
 }
 
-/// Buffers of one set of rays.
-struct SetBuffers {
-  int batch = 0, rays = 0, hits = -1;
+/// One set of rays in a job: what is asked for is made once.
+class RaySet {
+ public:
+  RaySet(const std::vector<Ray>& rays, AddressMode address, Job& job)
+      : rays_(rays), address_(address), grid_(grid_of(rays.size())), job_(job) {
+    const std::array<std::uint32_t, 4> batch = {static_cast<std::uint32_t>(rays.size()),
+                                                static_cast<std::uint32_t>(grid_.size()), 0, 0};
+    batch_ = add(make_buffer("Batch", batch.data(), sizeof batch));
+  }
+
+  int batch() const { return batch_; }
+  std::array<std::uint32_t, 3> groups() const { return {grid_.width / group_size, grid_.height, 1}; }
+
+  int rays(RayStorage storage) {
+    auto [known, is_new] = resources_.try_emplace({storage, 0});
+    if (is_new) {
+      known->second = add(storage, "Rays", Format::rgba32_float, ray_vectors, pack_rays(rays_, address_));
+    }
+    return known->second;
+  }
+
+  /// Hits that nobody reads share a resource.
+  int hits(RayStorage storage, bool count_cost, bool read) {
+    const std::size_t words = hit_words(count_cost);
+    if (read) {
+      const int made = add(storage, "Hits", Format::r32_uint, words, {});
+      const auto source = storage == RayStorage::image ? ReadBack::Source::texture : ReadBack::Source::buffer;
+      job_.read_backs.push_back({source, made, 0});
+      return made;
+    }
+    auto [known, is_new] = resources_.try_emplace({storage, words});
+    if (is_new) known->second = add(storage, "Hits", Format::r32_uint, words, {});
+    return known->second;
+  }
+
+ private:
+  int add(Buffer buffer) {
+    job_.buffers.push_back(std::move(buffer));
+    return static_cast<int>(job_.buffers.size()) - 1;
+  }
+
+  int add(RayStorage storage, std::string name, Format format, std::size_t components, std::vector<std::byte> data) {
+    if (storage == RayStorage::buffer) {
+      const std::size_t size = components * static_cast<std::size_t>(bytes_per_texel(format)) * grid_.size();
+      return add({std::move(name), size, std::move(data)});
+    }
+    Texture texture;
+    texture.name = std::move(name);
+    texture.format = format;
+    texture.width = static_cast<int>(grid_.width);
+    texture.height = static_cast<int>(grid_.height);
+    texture.depth = static_cast<int>(components);
+    texture.is_array = true;
+    if (!data.empty()) texture.data.push_back(std::move(data));
+    job_.textures.push_back(std::move(texture));
+    return static_cast<int>(job_.textures.size()) - 1;
+  }
+
+  std::span<const Ray> rays_;
+  AddressMode address_;
+  RayGrid grid_;
+  Job& job_;
+  int batch_ = 0;
+  std::map<std::pair<RayStorage, std::size_t>, int> resources_;  ///< of rays, and of hits by their words
 };
-
-SetBuffers add_set(const std::vector<Ray>& rays, AddressMode address, Job& job) {
-  std::array<std::uint32_t, 4> count = {static_cast<std::uint32_t>(rays.size()), 0, 0, 0};
-  SetBuffers set;
-  set.batch = static_cast<int>(job.buffers.size());
-  job.buffers.push_back(make_buffer("Batch", count.data(), sizeof(count)));
-  set.rays = static_cast<int>(job.buffers.size());
-  job.buffers.push_back(pack_rays(rays, address));
-  return set;
-}
-
-/// Hits that nobody reads share a buffer.
-int hits_buffer(SetBuffers& set, std::size_t rays, bool read_hits, Job& job) {
-  if (set.hits >= 0 && !read_hits) return set.hits;
-  set.hits = static_cast<int>(job.buffers.size());
-  job.buffers.push_back({"Hits", rays * sizeof(PackedHit), {}});
-  if (read_hits) job.read_backs.push_back({ReadBack::Source::buffer, set.hits, 0});
-  return set.hits;
-}
 
 }  // namespace
 
@@ -167,27 +245,28 @@ Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::sp
                            bool read_hits) {
   Job job;
   job.name = "trace";
-  std::vector<SetBuffers> buffers;
+  std::vector<RaySet> ray_sets;
   for (const std::vector<Ray>& rays : sets) {
     if (rays.empty())
       return fail(ErrorCode::usage, "trace.no-rays", "there are no rays to trace; expected at least one");
-    buffers.push_back(add_set(rays, maps.find("height")->second.address, job));
+    ray_sets.emplace_back(rays, maps.find("height")->second.address, job);
   }
   SharedPrograms programs;
-  std::vector<Dispatch> dispatches;
+  std::vector<RequestDispatch> dispatches;
   for (const TraceRequest& request : requests) {
-    Result<Dispatch> dispatch = make_dispatch(registry, maps, request, shader_target, programs, job);
-    if (!dispatch) return tl::unexpected(dispatch.error());
-    dispatches.push_back(std::move(*dispatch));
+    Result<RequestDispatch> made = make_dispatch(registry, maps, request, shader_target, programs, job);
+    if (!made) return tl::unexpected(made.error());
+    dispatches.push_back(std::move(*made));
   }
   std::vector<Command> round;
-  for (std::size_t s = 0; s < sets.size(); ++s) {
-    for (Dispatch dispatch : dispatches) {
-      dispatch.resources.push_back({0, batch_binding, buffers[s].batch});
-      dispatch.resources.push_back({0, rays_binding, buffers[s].rays});
-      dispatch.resources.push_back({0, hits_binding, hits_buffer(buffers[s], sets[s].size(), read_hits, job)});
+  for (RaySet& rays : ray_sets) {
+    for (const auto& [request, storage, count_cost] : dispatches) {
+      Dispatch dispatch = request;
+      dispatch.resources.push_back({0, batch_binding, rays.batch()});
+      dispatch.resources.push_back({0, rays_binding, rays.rays(storage)});
+      dispatch.resources.push_back({0, hits_binding, rays.hits(storage, count_cost, read_hits)});
       keep_contract(job.programs[static_cast<std::size_t>(dispatch.program)], dispatch.resources);
-      dispatch.groups = groups_for(sets[s].size());
+      dispatch.groups = rays.groups();
       round.emplace_back(std::move(dispatch));
     }
   }
@@ -204,11 +283,8 @@ Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::sp
 std::vector<Hit> read_hits(const std::vector<std::byte>& read_back, std::span<const Ray> rays, AddressMode address) {
   std::vector<Hit> hits;
   hits.reserve(rays.size());
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    PackedHit packed;
-    std::memcpy(&packed, read_back.data() + i * sizeof(PackedHit), sizeof(PackedHit));
-    hits.push_back(unpack(packed, rays[i], address));
-  }
+  const std::size_t stride = grid_of(rays.size()).size();
+  for (std::size_t i = 0; i < rays.size(); ++i) hits.push_back(unpack({read_back, stride, i}, rays[i], address));
   return hits;
 }
 

@@ -1,24 +1,43 @@
-// Traces a buffer of rays. The twins in C++ are PackedRay and PackedHit (job/trace_job.cpp).
+// Traces a set of rays. Rays and hits are stored a component after the other, each for all rays: component k of ray i is
+// word or vec4 k · stride + i of a buffer, or texel i of layer k of an image, row by row. The twin in C++ is job/trace_job.cpp.
 #include "shaders/lib/ray.glsl"
 
 layout(local_size_x = 64) in;
 
-struct PackedRay {
-  vec4 origin_limit;  // u, v, H, t_max
-  vec4 direction;     // du, dv, dH, unused
-};
-
-struct PackedHit {  // what is not written is zero
-  int status;
-  float t, u, v, h;
-  uint steps, fetches, unused;
-};
-
 layout(std140, set = 0, binding = 1) uniform Batch {
-  uvec4 ray_count;  // x
+  uvec4 ray_count;  // rays, stride
 };
-layout(std430, set = 0, binding = 2) readonly buffer Rays { PackedRay rays[]; };
-layout(std430, set = 0, binding = 3) writeonly buffer Hits { PackedHit hits[]; };
+
+// Components of a ray: (u, v, H, t_max), (du, dv, dH, unused).
+#if ray_storage == ray_storage_image
+layout(set = 0, binding = 2, rgba32f) readonly uniform highp image2DArray Rays;
+layout(set = 0, binding = 3, r32ui) writeonly uniform highp uimage2DArray Hits;
+#else
+layout(std430, set = 0, binding = 2) readonly buffer Rays { vec4 rays[]; };
+layout(std430, set = 0, binding = 3) writeonly buffer Hits { uint hits[]; };
+#endif
+
+// Components of a hit, floats as their bits.
+const int RAY_STATUS = 0, RAY_T = 1, RAY_U = 2, RAY_V = 3, RAY_H = 4;
+const int RAY_STEPS = 5, RAY_FETCHES = 6;  // only where they are counted
+
+uint ray_index() { return gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * gl_WorkGroupSize.x) + gl_GlobalInvocationID.x; }
+
+vec4 ray_read(int component) {
+#if ray_storage == ray_storage_image
+  return imageLoad(Rays, ivec3(gl_GlobalInvocationID.xy, component));
+#else
+  return rays[uint(component) * ray_count.y + ray_index()];
+#endif
+}
+
+void ray_write(int component, uint value) {
+#if ray_storage == ray_storage_image
+  imageStore(Hits, ivec3(gl_GlobalInvocationID.xy, component), uvec4(value));
+#else
+  hits[uint(component) * ray_count.y + ray_index()] = value;
+#endif
+}
 
 float ray_n_dot_v(vec3 direction) {
   precise float rise = abs(direction.z) * ray_scale;
@@ -30,21 +49,20 @@ float ray_n_dot_v(vec3 direction) {
 }
 
 void main() {
-  uint index = gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * gl_WorkGroupSize.x) + gl_GlobalInvocationID.x;
-  if (index >= ray_count.x) return;
-  vec4 origin_limit = rays[index].origin_limit;
-  vec3 direction = rays[index].direction.xyz;
+  if (ray_index() >= ray_count.x) return;
+  vec4 origin_limit = ray_read(0);
+  vec3 direction = ray_read(1).xyz;
   Ray ray = Ray(origin_limit.xyz, direction, origin_limit.w, ray_n_dot_v(direction));
   Hit hit = Hit(RELIEVO_MISS, 0.0, ray.origin);
   if (relievo_is_valid(ray)) hit = relievo_view_trace(ray);
   hit = relievo_sanitized(ray, hit);
-  hits[index].status = hit.status;
-  hits[index].t = hit.t;
-  hits[index].u = hit.point.x;
-  hits[index].v = hit.point.y;
-  hits[index].h = hit.point.z;
+  ray_write(RAY_STATUS, uint(hit.status));
+  ray_write(RAY_T, floatBitsToUint(hit.t));
+  ray_write(RAY_U, floatBitsToUint(hit.point.x));
+  ray_write(RAY_V, floatBitsToUint(hit.point.y));
+  ray_write(RAY_H, floatBitsToUint(hit.point.z));
 #if RELIEVO_COUNT
-  hits[index].steps = relievo_steps;
-  hits[index].fetches = relievo_fetches;
+  ray_write(RAY_STEPS, relievo_steps);
+  ray_write(RAY_FETCHES, relievo_fetches);
 #endif
 }

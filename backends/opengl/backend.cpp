@@ -55,17 +55,31 @@ class OpenGlBackend final : public Backend {
   const BackendInfo& info() const override { return info_; }
 
   Result<JobResult> execute(const Job& job) override {
+    std::vector<std::vector<std::byte>> read_backs;
+    const auto keep = [&](std::size_t, std::span<const std::byte> b) { read_backs.emplace_back(b.begin(), b.end()); };
+    Result<JobResult> result = run(
+        job, [] {}, keep);
+    if (result) result->read_backs = std::move(read_backs);
+    return result;
+  }
+  Result<JobResult> execute_once(Job job, const TakeReadBack& take) override {
+    return run(
+        job, [&job] { free_contents(job); }, take);
+  }
+
+ private:
+  Result<JobResult> run(const Job& job, const std::function<void()>& uploaded, const TakeReadBack& take) {
     if (auto status = validate_job(job); !status) return tl::unexpected(std::move(status.error()));
     const CurrentContext current(*context_);
     if (!current.status()) return tl::unexpected(current.status().error());
-    auto result = run_within_memory(job);
+    auto result = run_within_memory(job, uploaded, take);
     add_messages(result);
     return result;
   }
 
- private:
-  Result<JobResult> run_within_memory(const Job& job) try {
-    return run_job(job, options_);
+  Result<JobResult> run_within_memory(const Job& job, const std::function<void()>& uploaded,
+                                      const TakeReadBack& take) try {
+    return run_job(job, options_, uploaded, take);
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::backend, "backend.memory", fmt::format("job '{}' does not fit into memory", job.name));
   }

@@ -42,7 +42,7 @@ void clear_targets(const Job& job, GLuint framebuffer, const Draw& draw) {
   for (int i = 0; draw.clear_color && i < static_cast<int>(draw.color_targets.size()); ++i) {
     const auto& color = *draw.clear_color;
     if (is_integer(job.textures[draw.color_targets[i]].format)) {
-      const GLuint value[4] = {to_uint(color[0]), 0, 0, 0};
+      const GLuint value[4] = {to_uint(color[0]), to_uint(color[1]), to_uint(color[2]), to_uint(color[3])};
       glClearNamedFramebufferuiv(framebuffer, GL_COLOR, i, value);
     } else {
       glClearNamedFramebufferfv(framebuffer, GL_COLOR, i, color.data());

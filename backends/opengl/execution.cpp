@@ -67,7 +67,8 @@ Status run_commands(const Job& job, const std::vector<Program>& programs, const 
 
 }  // namespace
 
-Result<JobResult> run_job(const Job& job, const ExecutionOptions& options) {
+Result<JobResult> run_job(const Job& job, const ExecutionOptions& options, const std::function<void()>& uploaded,
+                          const TakeReadBack& take) {
   if (auto status = check_limits(job, options.limits); !status) return tl::unexpected(std::move(status.error()));
   const auto programs = build_programs(job);
   if (!programs) return tl::unexpected(programs.error());
@@ -75,12 +76,13 @@ Result<JobResult> run_job(const Job& job, const ExecutionOptions& options) {
   if (auto status = check(fmt::format("While uploading job '{}'", job.name), options.debug); !status) {
     return tl::unexpected(std::move(status.error()));
   }
+  uploaded();
   CommandTimers timers(options.limits.timestamp_bits > 0);
   if (auto status = run_commands(job, *programs, resources, options.debug, timers); !status) {
     return tl::unexpected(std::move(status.error()));
   }
   JobResult result;
-  for (const ReadBack& what : job.read_backs) result.read_backs.push_back(read_back(job, resources, what));
+  for (std::size_t i = 0; i < job.read_backs.size(); ++i) take(i, read_back(job, resources, job.read_backs[i]));
   result.command_seconds = timers.seconds();
   if (auto status = check(fmt::format("While reading back job '{}'", job.name), options.debug); !status) {
     return tl::unexpected(std::move(status.error()));

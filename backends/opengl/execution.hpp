@@ -1,8 +1,10 @@
 /// A Job's commands on the current context.
 #pragma once
 
+#include <functional>
+
 #include "limits.hpp"
-#include "relievo/job.hpp"
+#include "relievo/backend.hpp"
 #include "relievo/result.hpp"
 
 namespace relievo::opengl {
@@ -12,8 +14,10 @@ struct ExecutionOptions {
   bool debug = false;  ///< OpenGL's errors reach the debug output instead of failing the job
 };
 
-/// Runs a valid job to completion and deletes all that it made. JobResult::messages stays empty.
+/// Runs a valid job to completion, hands over what it reads back and deletes all that it made; the result has the times
+/// alone. Calls `uploaded` once the job's contents are not needed any more.
 /// Errors: those of check_limits and build_programs, "backend.gl-error", "backend.framebuffer".
-Result<JobResult> run_job(const Job& job, const ExecutionOptions& options);
+Result<JobResult> run_job(const Job& job, const ExecutionOptions& options, const std::function<void()>& uploaded,
+                          const TakeReadBack& take);
 
 }  // namespace relievo::opengl

@@ -32,12 +32,10 @@ GlFormat gl_format(Format format) {
       return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT};
     case Format::d32_float:
       return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT};
+    case Format::rgba16_uint:
+      return {GL_RGBA16UI, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT};
   }
   return {};
-}
-
-bool is_integer(Format format) {
-  return format == Format::r32_uint;
 }
 
 GLenum min_filter(const SamplerState& state, Format format) {

@@ -13,9 +13,6 @@ struct GlFormat {
 };
 
 GlFormat gl_format(Format format);
-/// Integer texels: the shader reads them with a usampler, and they are not filtered.
-bool is_integer(Format format);
-
 GLenum min_filter(const SamplerState& state, Format format);
 GLenum mag_filter(const SamplerState& state, Format format);
 GLenum wrap_mode(TexelAddress address);

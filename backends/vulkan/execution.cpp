@@ -23,12 +23,14 @@ class Execution {
         descriptors_(device, job),
         timestamps_(device, job.commands.size()) {}
 
-  JobResult run() {
+  JobResult run(const std::function<void()>& uploaded, const TakeReadBack& take) {
     // Apart from the rest, so that what was only there to be copied is gone when the work begins.
     device_.run([this](VkCommandBuffer commands) { resources_.upload(commands); });
     resources_.end_upload();
+    uploaded();
     device_.run([this](VkCommandBuffer commands) { record_all(commands); });
-    return {resources_.read_backs(), timestamps_.seconds(), {}};
+    resources_.read_back(take);
+    return {{}, timestamps_.seconds(), {}};
   }
 
  private:
@@ -109,8 +111,9 @@ class Execution {
     VkRenderingAttachmentInfo info = attachment(target, draw.clear_color.has_value());
     const std::array<float, 4> color = draw.clear_color.value_or(std::array<float, 4>{});
     VkClearColorValue& value = info.clearValue.color;
-    if (texture(target).format == Format::r32_uint) {
-      value.uint32[0] = static_cast<std::uint32_t>(std::clamp(static_cast<double>(color[0]), 0.0, 4294967295.0));
+    if (is_integer(texture(target).format)) {
+      const auto whole = [](float c) { return static_cast<std::uint32_t>(std::clamp(double{c}, 0.0, 4294967295.0)); };
+      std::transform(color.begin(), color.end(), value.uint32, whole);
     } else {
       std::copy(color.begin(), color.end(), value.float32);
     }
@@ -173,8 +176,9 @@ class Execution {
 
 }  // namespace
 
-JobResult run_job(Device& device, const Job& job, VkPipelineCache cache) {
-  return Execution(device, job, cache).run();
+JobResult run_job(Device& device, const Job& job, VkPipelineCache cache, const std::function<void()>& uploaded,
+                  const TakeReadBack& take) {
+  return Execution(device, job, cache).run(uploaded, take);
 }
 
 }  // namespace relievo::vulkan

@@ -43,6 +43,8 @@ VkFormat image_format(Format format) {
       return VK_FORMAT_R32_UINT;
     case Format::d32_float:
       return VK_FORMAT_D32_SFLOAT;
+    case Format::rgba16_uint:
+      return VK_FORMAT_R16G16B16A16_UINT;
   }
   return VK_FORMAT_UNDEFINED;
 }

@@ -147,23 +147,22 @@ void Resources::download_texture(VkCommandBuffer commands, const ReadBack& read_
                                     &copy);
 }
 
-std::vector<std::vector<std::byte>> Resources::read_backs() {
+void Resources::read_back(const TakeReadBack& take) {
   images_.clear();
-  std::vector<std::vector<std::byte>> results;
   for (std::size_t i = 0; i < job_.read_backs.size(); ++i) {
     const ReadBack& read_back = job_.read_backs[i];
     const auto index = static_cast<std::size_t>(read_back.index);
     const DeviceBuffer download = std::exchange(downloads_[i], {});
     if (read_back.source == ReadBack::Source::buffer) {
       const std::byte* bytes = download.bytes != nullptr ? download.bytes : buffers_[index].bytes;
-      results.emplace_back(bytes, bytes + job_.buffers[index].size);
+      take(i, {bytes, job_.buffers[index].size});
       continue;
     }
     const Texture& texture = job_.textures[index];
-    results.emplace_back(level_size(texture, read_back.level));
-    unpack_texels(texture.format, download.bytes, results.back());
+    std::vector<std::byte> texels(level_size(texture, read_back.level));
+    unpack_texels(texture.format, download.bytes, texels);
+    take(i, texels);
   }
-  return results;
 }
 
 void Resources::barrier(VkCommandBuffer commands, std::span<const Transition> transitions) {

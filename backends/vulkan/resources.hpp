@@ -39,8 +39,8 @@ class Resources {
   void end_upload() { uploads_.clear(); }
   /// Records the copies of everything that is read back.
   void download(VkCommandBuffer commands);
-  /// What was read back, once the commands have run. Frees the rest: results may be large.
-  std::vector<std::vector<std::byte>> read_backs();
+  /// Hands over what was read back, once the commands have run. Frees the rest first: results may be large.
+  void read_back(const TakeReadBack& take);
 
   /// Waits for everything before, and brings the image of texture `index` into `layout`.
   struct Transition {

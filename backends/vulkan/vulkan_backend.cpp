@@ -60,9 +60,23 @@ class VulkanBackend final : public Backend {
 
   const BackendInfo& info() const override { return info_; }
 
-  Result<JobResult> execute(const Job& job) override try {
+  Result<JobResult> execute(const Job& job) override {
+    std::vector<std::vector<std::byte>> read_backs;
+    const auto keep = [&](std::size_t, std::span<const std::byte> b) { read_backs.emplace_back(b.begin(), b.end()); };
+    Result<JobResult> result = run(
+        job, [] {}, keep);
+    if (result) result->read_backs = std::move(read_backs);
+    return result;
+  }
+  Result<JobResult> execute_once(Job job, const TakeReadBack& take) override {
+    return run(
+        job, [&job] { free_contents(job); }, take);
+  }
+
+ private:
+  Result<JobResult> run(const Job& job, const std::function<void()>& uploaded, const TakeReadBack& take) try {
     if (const Status valid = validate_job(job); !valid) return tl::unexpected(valid.error());
-    JobResult result = run_job(device_, job, cache_.handle());
+    JobResult result = run_job(device_, job, cache_.handle(), uploaded, take);
     const std::string cache_problem = cache_.save();
     result.messages = device_.messages().take();
     if (!cache_problem.empty()) result.messages.push_back(cache_problem);
@@ -73,7 +87,6 @@ class VulkanBackend final : public Backend {
     return fail(ErrorCode::backend, "backend.out-of-memory", fmt::format("Job \"{}\": out of memory", job.name));
   }
 
- private:
   /// The failure with the job's name, and with what the validation layer said, which may be its cause.
   tl::unexpected<Error> refusal(const Job& job, Error error) {
     error.message = fmt::format("Job \"{}\": {}", job.name, error.message);

@@ -99,6 +99,7 @@ VkFormat to_vulkan(relievo::Format format) {
                                                      {Format::rgb32_float, VK_FORMAT_R32G32B32_SFLOAT},
                                                      {Format::rgba32_float, VK_FORMAT_R32G32B32A32_SFLOAT},
                                                      {Format::r32_uint, VK_FORMAT_R32_UINT},
+                                                     {Format::rgba16_uint, VK_FORMAT_R16G16B16A16_UINT},
                                                      {Format::d32_float, VK_FORMAT_D32_SFLOAT}};
   for (const auto& [ours, theirs] : formats) {
     if (ours == format) return theirs;

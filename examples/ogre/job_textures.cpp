@@ -18,6 +18,8 @@ Ogre::PixelFormat to_pixel_format(Format format) {
       return Ogre::PF_SHORT_GR;
     case Format::rgba16_unorm:
       return Ogre::PF_SHORT_RGBA;
+    case Format::rgba16_uint:
+      return Ogre::PF_R16G16B16A16_UINT;
     case Format::r32_float:
       return Ogre::PF_FLOAT32_R;
     case Format::rg32_float:

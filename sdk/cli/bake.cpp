@@ -83,6 +83,7 @@ Status run_bake(const Context& context, const BakeOptions& options) {
   if (!height) return tl::unexpected(height.error());
   Result<std::unique_ptr<Backend>> backend = open(options.backend, false);
   if (!backend) return tl::unexpected(backend.error());
+  return_freed_memory();
   MapSet maps = map_set(*std::move(height));
   const Result<Cost> cost = bake(**backend, *registry, options.map, maps, settings->values);
   if (!cost) return tl::unexpected(cost.error());

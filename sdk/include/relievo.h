@@ -451,6 +451,7 @@ typedef struct relievo_map_info {
   relievo_address_mode address;
   const float* texels;
   size_t texel_floats; /* how many floats there are */
+  int32_t is_uint;     /* shaders read the whole numbers k: a texture of unsigned integers; else unorm or float */
 } relievo_map_info;
 
 /* Bakes a map, and first what it needs. RELIEVO_ERROR_UNSUPPORTED where the backend has no driver here. Thread-safe:

@@ -11,10 +11,10 @@
 
 const float QUADRANT_MAXIMA_REACH = 512.0;      // s: a glide goes no further, nor beyond a period
 const float QUADRANT_MAXIMA_ROUNDING = 2.5e-6;  // of H, a unit of s: see README.md
-const float QUADRANT_MAXIMA_DECODING = 6.0e-5;  // of H: a corner can be read so much too low
+const float QUADRANT_MAXIMA_HEIGHT = 5.0e-6;    // of H: likewise, however short the glide
 const float QUADRANT_MAXIMA_MARGIN = 2.0e-7;    // s a unit of s, to get across a border
 
-// Fixed for a ray, in the units that a texel's bytes count in.
+// Fixed for a ray, in the units in which the map's heights are compared.
 struct GlidePace {
   vec2 slope;         // cells a unit of s, towards the quadrant
   float fall;         // s a unit of height, if the ray falls
@@ -28,16 +28,15 @@ struct Glide {
   vec2 ahead;        // cells from the near corner of `base`, towards the quadrant
   vec4 u, v;         // s where the windows at `base` are left along each axis
   vec2 cell;         // and its cell
-  float top_window, top_corner;  // height where it starts, less what rounding can do
+  float top;         // height where it starts, less what rounding can do
   float left;        // s where it ends at the latest
   float margin;      // s to get across a border
 };
 
 GlidePace quadrant_maxima_pace(Walk walk) {
-  precise float fall = 1.0 / (RELIEVO_QUADRANT_WINDOW_UNIT * max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER));
-  precise float rise = RELIEVO_QUADRANT_CORNER_UNIT * walk.rise;
-  precise float climb = RELIEVO_QUADRANT_WINDOW_UNIT * max(walk.rise, 0.0);
-  return GlidePace(abs(walk.slope), fall, rise, climb);
+  precise float fall = 1.0 / (RELIEVO_QUADRANT_MAXIMA_UNIT * max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER));
+  precise float rise = RELIEVO_QUADRANT_MAXIMA_UNIT * walk.rise;
+  return GlidePace(abs(walk.slope), fall, rise, max(rise, 0.0));
 }
 
 Glide quadrant_maxima_glide(Walk walk, vec2 s) {
@@ -56,9 +55,9 @@ Glide quadrant_maxima_glide(Walk walk, vec2 s) {
   precise vec2 period = (walk.extent - 0.5) * walk.pace;
   float reach = min(min(period.x, period.y), QUADRANT_MAXIMA_REACH);
   glide.left = min(relievo_walk_left(walk, s), reach);
-  precise float top = place.height - (QUADRANT_MAXIMA_ROUNDING * glide.left + QUADRANT_MAXIMA_DECODING);
-  glide.top_window = RELIEVO_QUADRANT_WINDOW_UNIT * top;
-  glide.top_corner = RELIEVO_QUADRANT_CORNER_UNIT * top;
+  precise float height = place.height - (QUADRANT_MAXIMA_ROUNDING * glide.left + QUADRANT_MAXIMA_HEIGHT);
+  precise float top = 1.0 + RELIEVO_QUADRANT_MAXIMA_UNIT * height;
+  glide.top = top;
   glide.margin = QUADRANT_MAXIMA_MARGIN * max(glide.left, 16.0);
   return glide;
 }
@@ -78,7 +77,7 @@ QuadrantMaxima quadrant_maxima_ahead(Walk walk, Glide glide, ivec2 passed) {
 
 // The patch along a ray that crosses its cell is a quadratic, which its control points bound: the corners weighted
 // by where the ray is, by where it leaves, and by one of either in u and the other in v. Returned is a number whose sign bit is
-// set unless the ray stays above all three. Heights in corner units.
+// set unless the ray stays above all three.
 int quadrant_maxima_clears(vec4 corners, vec3 place, vec3 way) {
   precise vec3 end = place + way;
   precise vec4 at = vec4(1.0 - place.xy, place.xy), left = vec4(1.0 - end.xy, end.xy);
@@ -102,11 +101,11 @@ int quadrant_maxima_free(Walk walk, Glide glide, GlidePace pace, float s, out in
   precise vec2 before = vec2(passed) * walk.pace;
   precise vec4 u = glide.u + before.x, v = glide.v + before.y;
   precise vec2 cell = glide.cell + before;
-  precise vec4 sink = (glide.top_window + s * pace.climb - maxima.windows) * pace.fall;
+  precise vec4 sink = (glide.top + s * pace.climb - maxima.windows) * pace.fall;
   ivec4 free = min(min(floatBitsToInt(u), floatBitsToInt(v)), floatBitsToInt(sink));
   border = min(floatBitsToInt(cell.x), floatBitsToInt(cell.y));
 
-  precise float height = glide.top_corner + s * pace.rise;
+  precise float height = glide.top + s * pace.rise;
   precise float to_border = intBitsToFloat(border) - s;
   precise vec3 way = to_border * vec3(pace.slope, pace.rise);
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
@@ -123,18 +122,24 @@ int quadrant_maxima_free(Walk walk, Glide glide, GlidePace pace, float s, out in
 
 // Glides on from `s`; false when it is at the glide's end. True: nothing lets the ray through there.
 bool quadrant_maxima_is_blocked(Walk walk, Glide glide, GlidePace pace, inout int steps, inout float s) {
-  bool is_blocked;
+  int left = floatBitsToInt(glide.left);
+  int free, needed;  // s that the ray may go to, and that it must to be let through
   float from;
+  bool goes_on;
   do {
     --steps;
     RELIEVO_COUNT_STEP();
     int border;
-    int free = quadrant_maxima_free(walk, glide, pace, s, border);
-    is_blocked = free < max(border, floatBitsToInt(s));
+    free = quadrant_maxima_free(walk, glide, pace, s, border);
+    needed = max(border, floatBitsToInt(s));
     from = s;
     s = intBitsToFloat(free) + glide.margin;
-  } while (!is_blocked && s < glide.left && steps > 0);
-  s = is_blocked ? from : s;
+    // The next step waits for this: one comparison, needed <= free < limit.
+    int limit = steps > 0 ? max(left, needed) : needed;
+    goes_on = uint(free - needed) < uint(limit - needed);
+  } while (goes_on);
+  bool is_blocked = free < needed;
+  s = is_blocked ? from : intBitsToFloat(max(free, needed)) + glide.margin;
   return is_blocked;
 }
 

@@ -207,6 +207,16 @@ TEST(OpenGlBackend, TwoRunsAreByteIdentical) {
   EXPECT_EQ(first.read_backs, third.read_backs);
 }
 
+TEST(OpenGlBackend, AJobThatIsNotNeededAgainRunsTheSame) {
+  const Job job = square_job(257);
+  std::vector<std::vector<std::byte>> taken;
+  const Result<JobResult> once = open_opengl()->execute_once(
+      job, [&](std::size_t, std::span<const std::byte> bytes) { taken.emplace_back(bytes.begin(), bytes.end()); });
+  ASSERT_TRUE(once) << format(once.error());
+  EXPECT_THAT(once->read_backs, testing::IsEmpty());
+  EXPECT_EQ(taken, run(job).read_backs);
+}
+
 TEST(OpenGlBackend, BackendsAreUsedFromSeveralThreads) {
   const auto first = open_opengl(), second = open_opengl();
   std::vector<JobResult> results(4);
@@ -336,8 +346,11 @@ TEST(OpenGlExecution, NothingOutlivesTheJob) {
   Job job = square_job(3);
   sample_texture(job, "unused", {});
   const opengl::ExecutionOptions options{opengl::query_limits(), false};
-  EXPECT_TRUE(opengl::run_job(job, options));
-  EXPECT_FALSE(opengl::run_job(wrong_primitive_job(), options));
+  const auto drop = [](std::size_t, std::span<const std::byte>) {};
+  EXPECT_TRUE(opengl::run_job(
+      job, options, [] {}, drop));
+  EXPECT_FALSE(opengl::run_job(
+      wrong_primitive_job(), options, [] {}, drop));
   EXPECT_EQ(live_objects(), 0);
   // The count sees what is there: two buffers, a texture and its sampler.
   job.buffers.pop_back();

@@ -18,13 +18,13 @@ using testing::SizeIs;
 const std::vector<Format> all_formats = {
     Format::r8_unorm,    Format::rg8_unorm,    Format::rgb8_unorm,   Format::rgba8_unorm, Format::r16_unorm,
     Format::rg16_unorm,  Format::rgb16_unorm,  Format::rgba16_unorm, Format::r32_float,   Format::rg32_float,
-    Format::rgb32_float, Format::rgba32_float, Format::r32_uint,     Format::d32_float};
+    Format::rgb32_float, Format::rgba32_float, Format::r32_uint,     Format::rgba16_uint, Format::d32_float};
 
 int bits_per_channel(Format format) {
   return 8 * bytes_per_texel(format) / channel_count(format);
 }
 bool is_float(Format format) {
-  return bits_per_channel(format) == 32 && format != Format::r32_uint;
+  return bits_per_channel(format) == 32 && !is_integer(format);
 }
 
 Texture make_texture(Format format, int width, int height) {
@@ -59,7 +59,7 @@ double decode(Format format, const std::byte* channel) {
     std::memcpy(&value, &bits, sizeof value);
     return value;
   }
-  return format == Format::r32_uint ? bits : bits / (std::exp2(bits_per_channel(format)) - 1);
+  return is_integer(format) ? bits : bits / (std::exp2(bits_per_channel(format)) - 1);
 }
 
 /// What texelFetch gives for each texel: four channels, missing ones 0, 0, 1.
@@ -85,7 +85,7 @@ int mismatches(const std::vector<double>& expected, const std::vector<double>& g
 }
 
 Job fetch_job(const Texture& texture) {
-  const bool is_uint = texture.format == Format::r32_uint;
+  const bool is_uint = is_integer(texture.format);
   const std::string vec = is_uint ? "uvec4" : "vec4";
   Job job = compute_job("layout(local_size_x = 1) in;\nlayout(std430) buffer Out { " + vec + " v[]; };\nuniform " +
                             (is_uint ? "usampler2D" : "sampler2D") +
@@ -102,7 +102,7 @@ Job fetch_job(const Texture& texture) {
 
 std::vector<double> fetched_texels(const Texture& texture, const JobResult& result) {
   const auto& bytes = result.read_backs.at(0);
-  if (texture.format == Format::r32_uint) {
+  if (is_integer(texture.format)) {
     const auto values = from_bytes<std::uint32_t>(bytes);
     return {values.begin(), values.end()};
   }
@@ -276,19 +276,24 @@ TEST(OpenGlTexture, StorageTexturesAreReadAndWritten) {
 
 TEST(OpenGlTexture, EveryStorageFormatStoresWhatWasThere) {
   const std::vector<std::pair<Format, std::string>> formats = {
-      {Format::r8_unorm, "r8"},    {Format::rg8_unorm, "rg8"},    {Format::rgba8_unorm, "rgba8"},
-      {Format::r16_unorm, "r16"},  {Format::rg16_unorm, "rg16"},  {Format::rgba16_unorm, "rgba16"},
-      {Format::r32_float, "r32f"}, {Format::rg32_float, "rg32f"}, {Format::rgba32_float, "rgba32f"}};
+      {Format::r8_unorm, "r8"},         {Format::rg8_unorm, "rg8"},    {Format::rgba8_unorm, "rgba8"},
+      {Format::r16_unorm, "r16"},       {Format::rg16_unorm, "rg16"},  {Format::rgba16_unorm, "rgba16"},
+      {Format::r32_float, "r32f"},      {Format::rg32_float, "rg32f"}, {Format::rgba32_float, "rgba32f"},
+      {Format::rgba16_uint, "rgba16ui"}};
   for (const auto& [format, qualifier] : formats) {
     SCOPED_TRACE(qualifier);
     Texture texture = make_texture(format, 5, 3);
     texture.data = {noise(format, level_size(texture, 0))};
-    Job job = store_job(format, qualifier, "image", false);
+    const std::string number = is_integer(format) ? "u" : "";
+    Job job = store_job(format, qualifier, number + "image", false);
     job.programs[0].shaders[0] =
         make_shader(ShaderStage::compute, "layout(local_size_x = 5, local_size_y = 3) in;\nlayout(" + qualifier +
-                                              ") uniform image2D map;\nvoid main() {\n"
+                                              ") uniform " + number +
+                                              "image2D map;\nvoid main() {\n"
                                               "  ivec2 p = ivec2(gl_GlobalInvocationID.xy), q = ivec2(4, 2) - p;\n"
-                                              "  vec4 texel = imageLoad(map, q); memoryBarrierImage(); barrier();\n"
+                                              "  " +
+                                              number +
+                                              "vec4 texel = imageLoad(map, q); memoryBarrierImage(); barrier();\n"
                                               "  imageStore(map, p, texel); }");
     job.textures = {texture};
     job.commands.resize(1);

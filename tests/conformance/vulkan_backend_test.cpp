@@ -163,6 +163,21 @@ TEST(VulkanCompute, SeesTheContentsOfItsBuffers) {
   EXPECT_THAT(from_bytes<std::uint32_t>(run(job).read_backs[0]), ElementsAre(10, 21, 34, 49));
 }
 
+TEST(VulkanCompute, AJobThatIsNotNeededAgainRunsTheSame) {
+  Job job = squares_job();
+  job.buffers[0].data = to_bytes(std::vector<std::uint32_t>{10, 20, 30, 40});
+  const auto backend = open_backend("vulkan");
+  ASSERT_TRUE(backend) << format(backend.error());
+  std::vector<Bytes> taken;
+  const Result<JobResult> once = (*backend)->execute_once(
+      job, [&](std::size_t, std::span<const std::byte> bytes) { taken.emplace_back(bytes.begin(), bytes.end()); });
+  ASSERT_TRUE(once) << format(once.error());
+  EXPECT_THAT(once->read_backs, IsEmpty());
+  EXPECT_EQ(taken, run(job).read_backs);
+  free_contents(job);
+  EXPECT_THAT(from_bytes<std::uint32_t>(run(job).read_backs[0]), ElementsAre(0, 1, 4, 9));
+}
+
 TEST(VulkanCompute, LaterCommandsSeeWhatEarlierOnesWrote) {
   Job job = squares_job();
   job.commands.assign(50, job.commands[0]);

@@ -14,16 +14,16 @@ using testing::ElementsAre;
 using testing::FloatEq;
 using testing::Pointwise;
 
-constexpr Format all_formats[] = {Format::r8_unorm,  Format::rg8_unorm,  Format::rgb8_unorm,  Format::rgba8_unorm,
-                                  Format::r16_unorm, Format::rg16_unorm, Format::rgb16_unorm, Format::rgba16_unorm,
-                                  Format::r32_float, Format::rg32_float, Format::rgb32_float, Format::rgba32_float,
-                                  Format::r32_uint,  Format::d32_float};
+constexpr Format all_formats[] = {Format::r8_unorm,  Format::rg8_unorm,   Format::rgb8_unorm,  Format::rgba8_unorm,
+                                  Format::r16_unorm, Format::rg16_unorm,  Format::rgb16_unorm, Format::rgba16_unorm,
+                                  Format::r32_float, Format::rg32_float,  Format::rgb32_float, Format::rgba32_float,
+                                  Format::r32_uint,  Format::rgba16_uint, Format::d32_float};
 
 /// Bytes that are all different, and for floats exact values in [0,1].
 Bytes pattern(const Texture& texture, int level) {
   const std::size_t size = level_size(texture, level);
   const bool is_float = bytes_per_texel(texture.format) == 4 * channel_count(texture.format);
-  if (is_float && texture.format != Format::r32_uint) {
+  if (is_float && !is_integer(texture.format)) {
     std::vector<float> values(size / sizeof(float));
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i * 7 % 256 + 1) / 256.0f;
     return to_bytes(values);
@@ -48,7 +48,7 @@ std::array<float, 4> decode(const Texture& texture, const Bytes& data, std::size
     std::uint32_t bits = 0;
     std::memcpy(&bits, bytes, size);
     if (size == 4) value[c] = std::bit_cast<float>(bits);
-    if (size == 2) value[c] = static_cast<float>(bits) / 65535.0f;
+    if (size == 2) value[c] = static_cast<float>(bits) / (is_integer(texture.format) ? 1.0f : 65535.0f);
     if (size == 1) value[c] = static_cast<float>(bits) / 255.0f;
   }
   return value;
@@ -114,7 +114,8 @@ TEST_P(VulkanFormat, IsSampledTexelByTexel) {
     EXPECT_EQ(from_bytes<std::uint32_t>(to_bytes(first_of_four(values))), from_bytes<std::uint32_t>(data));
     return;
   }
-  const auto values = sample(texture, "sampler2D", "texelFetch(map, ivec2(i % 5, i / 5), 0)", 15);
+  const auto values = sample(texture, is_integer(GetParam()) ? "usampler2D" : "sampler2D",
+                             "vec4(texelFetch(map, ivec2(i % 5, i / 5), 0))", 15);
   for (std::size_t i = 0; i < 15; ++i) {
     const std::array<float, 4> expected = decode(texture, data, i);
     // Depth textures promise only their first channel.
@@ -203,7 +204,7 @@ class VulkanStorage : public testing::TestWithParam<StorageFormat> {};
 
 TEST_P(VulkanStorage, IsWrittenThenSampledByTheNextCommand) {
   const auto [format, qualifier] = GetParam();
-  const bool is_uint = format == Format::r32_uint;
+  const bool is_uint = is_integer(format);
   const std::string write =
       std::string(
           "layout(local_size_x = 1) in;\nlayout(std430, set = 0, binding = 0) buffer Result { uint unused; };\n") +
@@ -227,7 +228,8 @@ INSTANTIATE_TEST_SUITE_P(
                     StorageFormat{Format::rgba8_unorm, "rgba8"}, StorageFormat{Format::r16_unorm, "r16"},
                     StorageFormat{Format::rg16_unorm, "rg16"}, StorageFormat{Format::rgba16_unorm, "rgba16"},
                     StorageFormat{Format::r32_float, "r32f"}, StorageFormat{Format::rg32_float, "rg32f"},
-                    StorageFormat{Format::rgba32_float, "rgba32f"}, StorageFormat{Format::r32_uint, "r32ui"}),
+                    StorageFormat{Format::rgba32_float, "rgba32f"}, StorageFormat{Format::r32_uint, "r32ui"},
+                    StorageFormat{Format::rgba16_uint, "rgba16ui"}),
     [](const auto& test) { return std::string(to_string(test.param.format)); });
 
 TEST(VulkanTexture, IsSampledAndStoredByOneCommand) {

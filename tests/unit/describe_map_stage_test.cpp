@@ -40,6 +40,25 @@ TEST(ParseMap, ReadsTheFormatOfAnImage) {
   EXPECT_EQ(map->image, "rgba16");
 }
 
+TEST(ParseMap, ReadsWhetherTexelsAreWholeNumbers) {
+  EXPECT_FALSE(parse_map(examples::map, map_path)->is_uint);
+  const std::string bits =
+      "\n[parameters.bits]\ntitle = \"t\"\ntype = \"int\"\nmin = 16\nmax = 16\ndefault = 16\nbinding = \"macro\"\n";
+  const std::string whole =
+      with(examples::map, "channels = 3", "channels = 4\ntexels = \"uint\"\nrounding = \"up up up up\"");
+  const auto map = parse_map(whole + bits, map_path);
+  ASSERT_TRUE(map) << format(map.error());
+  EXPECT_TRUE(map->is_uint);
+  const auto fewer_channels = parse_map(with(whole, "channels = 4", "channels = 2") + bits, map_path);
+  ASSERT_FALSE(fewer_channels);
+  const auto more_bits = parse_map(whole + with(bits, "max = 16", "max = 32"), map_path);
+  ASSERT_FALSE(more_bits);
+  EXPECT_EQ(more_bits.error().id, "describe.map-parameter") << format(more_bits.error());
+  const auto no_bits = parse_map(with(examples::map, "channels = 3", "channels = 4\ntexels = \"uint\""), map_path);
+  ASSERT_FALSE(no_bits);
+  EXPECT_EQ(no_bits.error().id, "describe.map-parameter") << format(no_bits.error());
+}
+
 TEST(ParseMap, AllowsAProvidedMapWithoutAModule) {
   const auto map = parse_map(examples::provided_map, "shaders/maps/height/map.toml");
   ASSERT_TRUE(map) << format(map.error());

@@ -35,6 +35,7 @@ MapData random_map(const Shape& s, std::uint64_t seed = 1) {
   map.texels = values;
   const std::vector<Rounding> rounding(static_cast<std::size_t>(s.channels), Rounding::nearest);
   EXPECT_TRUE(quantise(map, s.bits, rounding));
+  map.is_uint = s.bits == 16 && s.channels == 4;
   return map;
 }
 
@@ -47,6 +48,7 @@ void expect_same(const MapData& a, const MapData& b) {
   EXPECT_EQ(a.levels, b.levels);
   EXPECT_EQ(a.channels, b.channels);
   EXPECT_EQ(a.bits, b.bits);
+  EXPECT_EQ(a.is_uint, b.is_uint);
   EXPECT_EQ(a.address, b.address);
   EXPECT_EQ(a.texels, b.texels);
 }

@@ -70,6 +70,18 @@ TEST(MapTexels, FloatsOfAMapOfFewerBitsAreRoundedInItsTexture) {
   EXPECT_EQ(map_texture(three_channels(values, 16)).data, map_texture(three_channels(MapTexels(values, 16), 16)).data);
 }
 
+TEST(MapTexels, ATextureOfWholeNumbersIsNotFiltered) {
+  MapData map = three_channels(MapTexels(std::vector<float>{0, 0.2f, 0.4f, 1, 0, 0, 0, 0}, 16), 16);
+  map.channels = 4;
+  EXPECT_EQ(map_texture(map).format, Format::rgba16_unorm);
+  EXPECT_EQ(map_texture(map).sampler.min_mag, TexelFilter::linear);
+  const Texture unorm = map_texture(map);
+  map.is_uint = true;
+  EXPECT_EQ(map_texture(map).format, Format::rgba16_uint);
+  EXPECT_EQ(map_texture(map).sampler.min_mag, TexelFilter::nearest);
+  EXPECT_EQ(map_texture(map).data, unorm.data);
+}
+
 TEST(MapTexels, ChannelsAreRoundedByTheirOwnRules) {
   MapData map = three_channels(std::vector<float>{0.5f, 0.5f, 0.5f, 0.1f, 0.1f, 0.1f}, 32);
   const std::vector<Rounding> rounding = {Rounding::up, Rounding::down, Rounding::nearest};

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +39,9 @@ struct BackendOptions {
   int fail_at_call = -1;       ///< null backend only: this call (0-based) fails
 };
 
+/// Gets a read-back, by its place in Job::read_backs; the bytes are there during the call only.
+using TakeReadBack = std::function<void(std::size_t index, std::span<const std::byte> bytes)>;
+
 /// Executes Jobs. One object is used from one thread at a time.
 class Backend {
  public:
@@ -45,6 +50,9 @@ class Backend {
   /// Runs the job to completion. Errors: "job.*" for a Job that is not valid, "backend.*" when the API refuses.
   /// Nothing of the job outlives the call.
   virtual Result<JobResult> execute(const Job& job) = 0;
+  /// The same with as little memory as may be, for a job that is not needed again: its contents may be freed once the
+  /// device has them, and each read-back is handed to `take`, in order, instead of being kept in the result.
+  virtual Result<JobResult> execute_once(Job job, const TakeReadBack& take);
 };
 
 /// What a backend folder provides: `extern const BackendFactory relievo::backends::<folder name>_factory;`

@@ -124,8 +124,9 @@ struct MapDescriptor {
   /// One a channel, for maps that have an int parameter `bits` (8, 16 or 32): 8 and 16 are stored as unorm. Empty:
   /// floats.
   std::vector<Rounding> rounding;
-  std::string sampler;  ///< GLSL name, e.g. "relievo_height_map"
-  /// GLSL format, e.g. "rgba16", of maps that can be read as an image: they have an axis `fetch` with the value
+  bool is_uint = false;  ///< shaders read whole numbers k, with a usampler, and not k / (2^bits − 1)
+  std::string sampler;   ///< GLSL name, e.g. "relievo_height_map"
+  /// GLSL format, e.g. "rgba8", of maps that can be read as an image: they have an axis `fetch` with the value
   /// `image`.
   std::string image;
   int set = 1, binding = 0;  ///< the binding contract; unique among maps

@@ -19,7 +19,7 @@ namespace relievo {
 enum class ShaderStage { vertex, tessellation_control, tessellation_evaluation, geometry, fragment, compute };
 std::string_view to_string(ShaderStage stage);
 
-/// Texel and vertex formats. `unorm` maps 0..max to [0,1].
+/// Texel and vertex formats. `unorm` maps 0..max to [0,1]; `uint` are whole numbers, which no filter applies to.
 enum class Format {
   r8_unorm,
   rg8_unorm,
@@ -35,9 +35,11 @@ enum class Format {
   rgba32_float,
   r32_uint,
   d32_float,
+  rgba16_uint,
 };
 std::string_view to_string(Format format);
 int channel_count(Format format);
+bool is_integer(Format format);
 int bytes_per_texel(Format format);
 
 enum class TexelFilter { nearest, linear };
@@ -175,6 +177,9 @@ std::size_t level_size(const Texture& texture, int level);
 
 /// Bytes of the job's buffers and textures: what it takes on a device, besides copies on the way there and back.
 std::size_t resource_bytes(const Job& job);
+
+/// Frees what buffers and textures hold. Sizes and formats stay; a job that runs afterwards finds zeros.
+void free_contents(Job& job);
 
 /// A self-contained binary form (CBOR with a schema version), for a backend in another process. `parse_job` rejects
 /// anything that is not a valid job; id "job.parse".

@@ -29,6 +29,7 @@ struct MapData {
   MapDimension dimension = MapDimension::flat;
   /// 8, 16: every texel is k / (2^bits − 1) and the texture is unorm; 32: floats. Texels of more bits are rounded.
   int bits = 32;
+  bool is_uint = false;  ///< the texture holds the whole numbers k; then bits is 16 and channels 4
 };
 
 /// Brings every value to the nearest, next higher or next lower multiple of 1 / (2^bits − 1), by channel.
@@ -91,8 +92,8 @@ Status write_map(const std::filesystem::path& path, const MapData& map,
 /// "maps.format" for floats in a .png; "image.*".
 Result<MapFile> read_map(const std::filesystem::path& path, const MapData* shape = nullptr);
 
-/// The texture of a map, of its bits: 1, 2 or 4 channels (3 become 4), filtered linearly, with the address mode of the
-/// map.
+/// The texture of a map, of its bits: 1, 2 or 4 channels (3 become 4), with the address mode of the map; filtered
+/// linearly unless it holds whole numbers.
 Texture map_texture(const MapData& map);
 
 /// A height map as a texture of the axis `height.format`: "red"; "alpha": RGBA floats, the first three 0;

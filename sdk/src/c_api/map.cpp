@@ -74,7 +74,8 @@ relievo_status relievo_map_get(const relievo_map* map, relievo_map_info* info, r
              static_cast<relievo_map_dimension>(data.dimension),
              static_cast<relievo_address_mode>(data.address),
              map->texels.data(),
-             map->texels.size()};
+             map->texels.size(),
+             data.is_uint};
     return {};
   });
 }

@@ -35,11 +35,13 @@ std::string declare_map(const MapDescriptor& map) {
   constexpr std::array<std::string_view, 3> kinds = {"2D", "2DArray", "3D"};
   const std::string_view kind = kinds[static_cast<std::size_t>(map.dimension)];
   const std::string place = fmt::format("set = {}, binding = {}", map.set, map.binding);
-  const std::string texture = fmt::format("layout({}) uniform highp sampler{} {};\n", place, kind, map.sampler);
+  const std::string_view number = map.is_uint ? "u" : "";
+  const std::string texture =
+      fmt::format("layout({}) uniform highp {}sampler{} {};\n", place, number, kind, map.sampler);
   if (map.image.empty()) return texture;
   return fmt::format(
-      "#if {0}_fetch == {0}_fetch_image\nlayout({1}, {2}) readonly uniform highp image{3} {4};\n#else\n{5}#endif\n",
-      map.name, place, map.image, kind, map.sampler, texture);
+      "#if {0}_fetch == {0}_fetch_image\nlayout({1}, {2}) readonly uniform highp {3}image{4} {5};\n#else\n{6}#endif\n",
+      map.name, place, map.image, number, kind, map.sampler, texture);
 }
 
 Result<std::string> declare_maps(const std::vector<const MapDescriptor*>& maps, SourceExpander& expander) {

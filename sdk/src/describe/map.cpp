@@ -12,8 +12,9 @@ namespace {
 constexpr std::array<std::string_view, 2> level_names = {"single", "pyramid"};
 constexpr std::array<std::string_view, 3> dimension_names = {"2d", "2d_array", "3d"};
 constexpr std::array<std::string_view, 4> rounding_names = {"nearest", "up", "down", "exact"};
-constexpr std::array<std::string_view, 9> image_formats = {"r8",     "rg8",  "rgba8", "r16",    "rg16",
-                                                           "rgba16", "r32f", "rg32f", "rgba32f"};
+constexpr std::array<std::string_view, 2> texel_names = {"unorm", "uint"};
+constexpr std::array<std::string_view, 10> image_formats = {"r8",     "rg8",  "rgba8", "r16",     "rg16",
+                                                            "rgba16", "r32f", "rg32f", "rgba32f", "rgba16ui"};
 constexpr int max_layers = 256;
 
 bool is_glsl_identifier(std::string_view name) {
@@ -88,10 +89,10 @@ void read_rounding(TomlReader& reader, MapDescriptor& map) {
 }
 
 void read_map(TomlReader& reader, MapDescriptor& map) {
-  reader.allow_keys({"schema",     "name",      "title",   "source",           "summary", "inputs",       "channels",
-                     "levels",     "dimension", "layers",  "layers_parameter", "passes",  "layers_apart", "rounding",
-                     "sampler",    "image",     "binding", "module",           "access",  "features",     "loops",
-                     "parameters", "axes"});
+  reader.allow_keys({"schema", "name",       "title",  "source",           "summary", "inputs",       "channels",
+                     "levels", "dimension",  "layers", "layers_parameter", "passes",  "layers_apart", "rounding",
+                     "texels", "sampler",    "image",  "binding",          "module",  "access",       "features",
+                     "loops",  "parameters", "axes"});
   map.inputs = reader.names("inputs");
   map.channels = reader.integer("channels", 1, 4);
   map.levels = reader.choice_of<MapLevels>("levels", level_names, MapLevels::single);
@@ -99,6 +100,7 @@ void read_map(TomlReader& reader, MapDescriptor& map) {
   read_rounding(reader, map);
   if (reader.has("passes")) map.passes = reader.integer("passes", 1, max_layers);
   map.layers_apart = reader.choices("layers_apart", {"repeat", "mirror", "clamp", "clip"}, "describe.range");
+  map.is_uint = reader.choice("texels", texel_names, 0) == 1;
   map.sampler = read_sampler(reader);
   if (reader.has("image")) map.image = image_formats[reader.choice("image", image_formats, 0)];
   read_binding(reader, map);
@@ -143,6 +145,19 @@ Status check_host_parameter(const MapDescriptor& map, std::string_view name, int
       map.file, is_there ? found->line : 1, 1);
 }
 
+/// Whole numbers are there as textures of four channels of 16 bits.
+Status check_whole_numbers(const MapDescriptor& map) {
+  if (!map.is_uint) return {};
+  const auto bits = find_parameter(map, "bits");
+  const bool has_16_bits = bits != map.parameters.end() && bits->minimum == 16 && bits->maximum == 16;
+  if (map.channels == 4 && !map.rounding.empty() && has_16_bits) return {};
+  return fail(ErrorCode::usage, "describe.map-parameter",
+              fmt::format("map {} has the texels \"uint\" but not four channels, the key \"rounding\" and a parameter "
+                          "\"bits\" whose only value is 16",
+                          quote(map.name)),
+              map.file, 1, 1);
+}
+
 /// A map that can be read as an image has the axis that says whether it is.
 Status check_image(const MapDescriptor& map) {
   if (map.image.empty()) return {};
@@ -168,6 +183,7 @@ Result<MapDescriptor> parse_map(std::string_view text, const std::string& path) 
   if (!map->rounding.empty()) {
     if (Status status = check_host_parameter(*map, "bits", 32); !status) return tl::unexpected(status.error());
   }
+  if (Status status = check_whole_numbers(*map); !status) return tl::unexpected(status.error());
   if (Status status = check_image(*map); !status) return tl::unexpected(status.error());
   return map;
 }

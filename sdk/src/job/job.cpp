@@ -17,7 +17,7 @@ struct FormatTraits {
 constexpr FormatTraits format_traits[] = {
     {"r8_unorm", 1, 1},    {"rg8_unorm", 2, 1},    {"rgb8_unorm", 3, 1},   {"rgba8_unorm", 4, 1}, {"r16_unorm", 1, 2},
     {"rg16_unorm", 2, 2},  {"rgb16_unorm", 3, 2},  {"rgba16_unorm", 4, 2}, {"r32_float", 1, 4},   {"rg32_float", 2, 4},
-    {"rgb32_float", 3, 4}, {"rgba32_float", 4, 4}, {"r32_uint", 1, 4},     {"d32_float", 1, 4},
+    {"rgb32_float", 3, 4}, {"rgba32_float", 4, 4}, {"r32_uint", 1, 4},     {"d32_float", 1, 4},   {"rgba16_uint", 4, 2},
 };
 
 const FormatTraits& traits(Format format) {
@@ -46,6 +46,10 @@ int channel_count(Format format) {
   return traits(format).channels;
 }
 
+bool is_integer(Format format) {
+  return format == Format::r32_uint || format == Format::rgba16_uint;
+}
+
 int bytes_per_texel(Format format) {
   return traits(format).channels * traits(format).bytes_per_channel;
 }
@@ -63,6 +67,11 @@ std::size_t level_size(const Texture& texture, int level) {
   const auto extent = [level](int size) { return static_cast<std::size_t>(std::max(1, size >> level)); };
   return extent(texture.width) * extent(texture.height) * extent(texture.depth) *
          static_cast<std::size_t>(bytes_per_texel(texture.format));
+}
+
+void free_contents(Job& job) {
+  for (Buffer& buffer : job.buffers) buffer.data = {};
+  for (Texture& texture : job.textures) texture.data = {};
 }
 
 }  // namespace relievo

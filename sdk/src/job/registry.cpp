@@ -20,6 +20,14 @@ tl::unexpected<Error> unknown_backend(std::string_view name) {
 
 }  // namespace
 
+Result<JobResult> Backend::execute_once(Job job, const TakeReadBack& take) {
+  Result<JobResult> result = execute(job);
+  if (!result) return result;
+  std::vector<std::vector<std::byte>> read_backs = std::exchange(result->read_backs, {});
+  for (std::size_t i = 0; i < read_backs.size(); ++i) take(i, std::exchange(read_backs[i], {}));
+  return result;
+}
+
 std::vector<BackendInfo> list_backends() {
   std::vector<BackendInfo> infos;
   for (const BackendFactory* factory : backend_table()) infos.push_back(factory->probe());

@@ -94,7 +94,7 @@ constexpr ShaderStage last(ShaderStage) {
   return ShaderStage::compute;
 }
 constexpr Format last(Format) {
-  return Format::d32_float;
+  return Format::rgba16_uint;
 }
 constexpr TexelFilter last(TexelFilter) {
   return TexelFilter::linear;

@@ -43,8 +43,9 @@ void check_resource(Check& check, const Job& job, const BindingSlot& slot, int r
   } else {
     const bool is_nearest =
         texture.sampler.min_mag == TexelFilter::nearest && texture.sampler.mip == TexelFilter::nearest;
-    check.require(texture.format != Format::r32_uint || is_nearest, "job.format",
-                  "texture \"{}\" of format r32_uint has a linear filter, expected nearest", texture.name);
+    check.require(!is_integer(texture.format) || is_nearest, "job.format",
+                  "texture \"{}\" of format {} has a linear filter, expected nearest", texture.name,
+                  to_string(texture.format));
   }
 }
 

@@ -130,12 +130,14 @@ Status bake_texels(Backend& backend, const PreparedProgram& prepared, const MapD
                    std::vector<std::string>* messages) {
   for (int first = 0; first < output.depth; first += plan.layers) {
     const BakeSlab slab{first, std::min(plan.layers, output.depth - first)};
-    Result<JobResult> result = backend.execute(bake_job(prepared, descriptor, maps, output, plan, slab));
+    Status added;
+    const auto add = [&](std::size_t, std::span<const std::byte> bytes) {
+      if (added) added = texels.add(bytes);
+    };
+    Result<JobResult> result = backend.execute_once(bake_job(prepared, descriptor, maps, output, plan, slab), add);
     if (!result) return tl::unexpected(result.error());
     append_messages(*result, messages);
-    for (std::vector<std::byte>& buffer : result->read_backs) {
-      if (Status status = texels.add(std::exchange(buffer, {})); !status) return status;
-    }
+    if (!added) return added;
   }
   return {};
 }

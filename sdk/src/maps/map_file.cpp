@@ -126,6 +126,7 @@ MapFile parse_description(const json& text) {
   map.levels = text.at("levels").get<int>();
   map.channels = text.at("channels").get<int>();
   map.bits = text.at("bits").get<int>();
+  map.is_uint = text.value("texels", "unorm") == "uint";
   map.dimension = dimension_of(text.at("dimension").get<std::string>());
   const Result<AddressMode> address = parse_address_mode(text.at("address").get<std::string>());
   if (!address) throw std::runtime_error(address.error().message);
@@ -209,6 +210,7 @@ Status write_map(const path& file, const MapData& map, const std::map<std::strin
                {"dimension", to_string(map.dimension)},
                {"address", to_string(map.address)},
                {"values", values}};
+  if (map.is_uint) text["texels"] = "uint";
   const std::string lines = text.dump(2) + "\n";
   return write_file(description_of(file), std::vector<std::uint8_t>(lines.begin(), lines.end()), "maps");
 }

@@ -30,6 +30,7 @@ MapData map_shape(const MapDescriptor& descriptor, int width, int height, Addres
   map.dimension = descriptor.dimension;
   map.depth = parameter_of(descriptor, descriptor.layers_parameter, values, descriptor.layers);
   map.bits = descriptor.rounding.empty() ? 32 : parameter_of(descriptor, "bits", values, 32);
+  map.is_uint = descriptor.is_uint;
   if (descriptor.levels == MapLevels::single) return map;
   map.width = static_cast<int>(std::bit_ceil(static_cast<unsigned>(width)));
   map.height = static_cast<int>(std::bit_ceil(static_cast<unsigned>(height)));

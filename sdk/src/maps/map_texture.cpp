@@ -50,6 +50,7 @@ std::vector<std::vector<std::byte>> all_bytes(const MapTexels& texels, const Map
 }
 
 Format map_format(const MapData& map, std::size_t stored) {
+  if (map.is_uint) return Format::rgba16_uint;
   constexpr std::array<std::array<Format, 3>, 3> formats = {{
       {Format::r8_unorm, Format::rg8_unorm, Format::rgba8_unorm},
       {Format::r16_unorm, Format::rg16_unorm, Format::rgba16_unorm},
@@ -97,6 +98,7 @@ Texture map_texture(const MapData& map) {
   texture.is_array = map.dimension == MapDimension::array;
   texture.sampler.address.fill(texel_address(map.address));
   texture.sampler.address[2] = TexelAddress::clamp;
+  if (map.is_uint) texture.sampler.min_mag = TexelFilter::nearest;
   texture.levels = map.levels;
   if (map.texels.bits() == map.bits) {
     texture.data = all_bytes(map.texels, map, stored);

@@ -38,7 +38,7 @@ void quadrant_maxima_pack(ivec2 texel) {
   ivec2 heading = relievo_heading(quadrant);
   if (heading.x < 0) corners = corners.yxwz;
   if (heading.y < 0) corners = corners.zwxy;
-  vec4 packed = 256.0 * quadrant_maxima_bytes(windows) + max(quadrant_maxima_bytes(corners), 1.0);
+  vec4 packed = 256.0 * quadrant_maxima_bytes(windows) + quadrant_maxima_bytes(corners);
   for (int k = 0; k < 4; ++k) relievo_bake_write(texel, k, packed[k] / 65535.0);
 }
 

@@ -2,25 +2,23 @@
 #include "shaders/lib/fold.glsl"
 
 struct QuadrantMaxima {
-  vec4 windows;  // greatest heights over the windows, smallest first
+  vec4 windows;  // greatest heights over the windows, smallest first; 1 + H · 255/256
   vec4 corners;  // of the cell: near, across in u, across in v, far
 };
 
-// What stands for a height of 1. A corner is never 0 but 1/255 at least.
-const float RELIEVO_QUADRANT_WINDOW_UNIT = 255.0;
-const float RELIEVO_QUADRANT_CORNER_UNIT = 255.0 / 256.0;
+// Heights are compared as 1 + H · 255/256: a byte of them becomes such a float, in [1, 2), by two operations on its bits.
+const float RELIEVO_QUADRANT_MAXIMA_UNIT = 255.0 / 256.0;
 
-// A channel holds a window's byte above a corner's: as a whole and a fraction.
+// A channel holds a window's byte above a corner's.
 QuadrantMaxima relievo_quadrant_maxima_at(ivec2 cell, int quadrant) {
   RELIEVO_COUNT_FETCHES(1);
 #if quadrant_maxima_fetch == quadrant_maxima_fetch_image
-  vec4 texel = imageLoad(relievo_quadrant_maxima_map, ivec3(cell, quadrant));
+  uvec4 texel = imageLoad(relievo_quadrant_maxima_map, ivec3(cell, quadrant));
 #else
-  vec4 texel = texelFetch(relievo_quadrant_maxima_map, ivec3(cell, quadrant), 0);
+  uvec4 texel = texelFetch(relievo_quadrant_maxima_map, ivec3(cell, quadrant), 0);
 #endif
-  precise vec4 both = texel * (65535.0 / 256.0);
-  vec4 windows = floor(both);
-  precise vec4 corners = both - windows;
+  vec4 windows = uintBitsToFloat(((texel & 0xff00u) << 7) | 0x3f800000u);
+  vec4 corners = uintBitsToFloat(((texel & 0x00ffu) << 15) | 0x3f800000u);
   return QuadrantMaxima(windows, corners);
 }
 

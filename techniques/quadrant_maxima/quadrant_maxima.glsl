@@ -39,8 +39,7 @@ GlidePace quadrant_maxima_pace(Walk walk) {
   return GlidePace(abs(walk.slope), fall, rise, max(rise, 0.0));
 }
 
-Glide quadrant_maxima_glide(Walk walk, vec2 s) {
-  WalkPlace place = relievo_walk_place(walk, s);
+Glide quadrant_maxima_glide(Walk walk, vec2 s, WalkPlace place) {
   vec4 widths = relievo_quadrant_maxima_widths();
   Glide glide;
   glide.against = ivec2(min(walk.heading, 0.0));
@@ -150,13 +149,17 @@ Hit quadrant_maxima_trace(Ray ray) {
   if (!relievo_search_begin(ray, textureSize(relievo_cell_corners_map, 0), interval, walk, hit)) return hit;
   GlidePace pace = quadrant_maxima_pace(walk);
   WalkSearch search = relievo_search_start(quadrant_maxima_max_steps);
-  float on = 0.0;  // s from the place that is known exactly
+  WalkPlace place = WalkPlace(walk.base_cell, walk.base_fraction, walk.base_height);  // known exactly
+  float on = 0.0;                                                                    // s from there
   while (relievo_search_is_open(search)) {
-    bool is_blocked = quadrant_maxima_is_blocked(walk, quadrant_maxima_glide(walk, search.s), pace, search.steps, on);
+    bool is_blocked = quadrant_maxima_is_blocked(walk, quadrant_maxima_glide(walk, search.s, place), pace, search.steps, on);
     search.s = relievo_walk_on(search.s, on);
     on = 0.0;
-    WalkPlace place = relievo_walk_place(walk, search.s);
-    if (relievo_walk_is_far(search.s)) relievo_walk_rebase_to(place, walk, search.s);
+    place = relievo_walk_place(walk, search.s);
+    if (relievo_walk_is_far(search.s)) {
+      relievo_walk_rebase_to(place, walk, search.s);
+      place.cell = walk.base_cell;
+    }
     if (is_blocked) {
       // The next glide starts here and not behind the cell, so that it need not wait for the solution to be prepared.
       float border = relievo_search_cell(walk, place, relievo_cell_corners_at(place.cell, walk.extent), search);

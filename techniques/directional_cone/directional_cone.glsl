@@ -7,7 +7,7 @@ Hit directional_cone_trace(Ray ray) {
   Walk walk;
   Hit hit;
   if (!relievo_search_begin(ray, textureSize(relievo_cell_corners_map, 0), interval, walk, hit)) return hit;
-  ConeRay constants = relievo_cone_ray(walk);
+  ConeRay constants = relievo_cone_ray(walk, directional_cone_reach);
   int slice = relievo_sector_slice(walk.slope, directional_cone_sectors);
   WalkSearch search = relievo_search_start(directional_cone_max_steps);
   while (relievo_search_is_open(search)) {
@@ -18,7 +18,7 @@ Hit directional_cone_trace(Ray ray) {
         WalkPlace place = relievo_walk_place(walk, search.s);
         vec3 cone = relievo_directional_cone_at(relievo_fold_cell(place.cell, walk.extent, walk.heading), slice);
         float border = relievo_walk_border(walk, place);
-        float free = relievo_cone_free(walk, place, constants, cone, border, float(directional_cone_reach));
+        float free = relievo_cone_free(walk, place, constants, cone, border);
         if (free < border || !relievo_search_pass(walk, search, free + RELIEVO_WALK_MARGIN)) break;
       }
       if (search.ends) break;

@@ -7,7 +7,7 @@ Hit robust_cone_trace(Ray ray) {
   Walk walk;
   Hit hit;
   if (!relievo_search_begin(ray, textureSize(relievo_cell_corners_map, 0), interval, walk, hit)) return hit;
-  ConeRay constants = relievo_cone_ray(walk);
+  ConeRay constants = relievo_cone_ray(walk, robust_cone_reach);
   WalkSearch search = relievo_search_start(robust_cone_max_steps);
   while (relievo_search_is_open(search)) {
     while (search.steps > 0) {
@@ -17,7 +17,7 @@ Hit robust_cone_trace(Ray ray) {
         WalkPlace place = relievo_walk_place(walk, search.s);
         vec3 cone = relievo_robust_cone_at(relievo_fold_cell(place.cell, walk.extent, walk.heading));
         float border = relievo_walk_border(walk, place);
-        float free = relievo_cone_free(walk, place, constants, cone, border, float(robust_cone_reach));
+        float free = relievo_cone_free(walk, place, constants, cone, border);
         if (free < border || !relievo_search_pass(walk, search, free + RELIEVO_WALK_MARGIN)) break;
       }
       if (search.ends) break;

@@ -34,7 +34,7 @@ const float RELIEVO_WALK_FAST = 1.0e30;  // texels a unit of t
 
 // A step goes this far beyond the border it aims at, so that it always gets across; what lies on the way is tested from
 // the far side, where a point below the surface is a hit.
-const float RELIEVO_WALK_MARGIN = 2.0e-6;
+const float RELIEVO_WALK_MARGIN = 1.0e-6;
 const float RELIEVO_WALK_NEVER = 1.0e30;  // s of an event that does not occur; times 1024 it is still finite
 const float RELIEVO_WALK_FAR = 1.0e6;     // texels: cells are folded exactly up to twice as far
 

@@ -27,6 +27,12 @@ void relievo_clip_axis(float origin, float direction, inout Interval interval) {
   }
 }
 
+// t where a ray from above comes down to the lid.
+float relievo_lid(Ray ray) {
+  precise float lid = (1.0 - ray.origin.z) / ray.direction.z;
+  return lid;
+}
+
 // Returns false when the ray meets neither; interval.end_status then says why.
 bool relievo_interval(Ray ray, out Interval interval) {
   interval = Interval(0.0, ray.t_max, RELIEVO_MISS);
@@ -34,8 +40,7 @@ bool relievo_interval(Ray ray, out Interval interval) {
   float fall = ray.direction.z;
   if (height > 1.0) {
     if (fall >= 0.0) return false;
-    precise float lid = (1.0 - height) / fall;
-    interval.enter = lid;
+    interval.enter = relievo_lid(ray);
   }
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
   relievo_clip_axis(ray.origin.x, ray.direction.x, interval);
@@ -66,10 +71,14 @@ bool relievo_interval(Ray ray, out Interval interval) {
   return interval.enter <= interval.exit;
 }
 
-// The point at t, with H exact where the interval meets the lid: a plateau at 1 is then touched, not missed by rounding.
+bool relievo_enters_at_lid(Ray ray, Interval interval) {
+  return ray.origin.z > 1.0 && interval.enter == relievo_lid(ray);
+}
+
+// The point at interval.enter, with H exact where that is the lid: a plateau at 1 is then touched, not missed by rounding.
 vec3 relievo_entry_point(Ray ray, Interval interval) {
   vec3 point = relievo_point(ray, interval.enter);
-  if (ray.origin.z > 1.0) point.z = min(point.z, 1.0);
+  if (ray.origin.z > 1.0) point.z = relievo_enters_at_lid(ray, interval) ? 1.0 : min(point.z, 1.0);
   return point;
 }
 

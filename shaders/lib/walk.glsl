@@ -64,23 +64,29 @@ vec2 relievo_walk_first_period(vec2 uv) {
   return first;
 }
 
-// Starts a walk at t = interval.enter. Returns false for places so far out that floats cannot tell cells apart, and for
+// Starts a walk at t = interval.enter, or exactly at the lid where that is meant: from far above, one float t tells places
+// apart worse than the walk. Returns false for places so far out that floats cannot tell cells apart, and for
 // directions so long that their products overflow.
 bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk) {
   walk.extent = vec2(extent);
-  vec2 start, start_error, way, way_error, move, move_error;
+  vec2 start, start_error, way, way_error, move, move_error, fall, fall_error;
   relievo_two_product(clamp(relievo_walk_first_period(ray.origin.xy), -RELIEVO_WALK_FAR, RELIEVO_WALK_FAR), walk.extent,
                       start, start_error);
   relievo_two_product(ray.direction.xy, walk.extent, way, way_error);
   relievo_two_product(vec2(min(interval.enter, 1.0e15)), way, move, move_error);
-  precise vec2 error = (start_error + (move_error + interval.enter * way_error)) - 0.5;
+  relievo_two_product(vec2(min(interval.enter, 1.0e15)), ray.direction.zz, fall, fall_error);
+  bool at_lid = relievo_enters_at_lid(ray, interval);
+  precise float to_lid = ((1.0 - ray.origin.z) - fall.x) - fall_error.x;
+  precise float height = (ray.origin.z + fall.x) + fall_error.x;
+  float rest = at_lid ? to_lid / ray.direction.z : 0.0;
+  precise vec2 error = (start_error + (move_error + interval.enter * way_error + rest * way)) - 0.5;
   vec2 start_cell = floor(start), move_cell = floor(move);
   precise vec2 near = ((start - start_cell) + (move - move_cell)) + error;
   vec2 near_cell = floor(near);
   precise vec2 fraction = near - near_cell;
   walk.base_fraction = fraction;
   walk.base_cell = start_cell + move_cell + near_cell;
-  walk.base_height = relievo_entry_point(ray, interval).z;
+  walk.base_height = at_lid ? 1.0 : height;
   walk.base_t = interval.enter;
 
   // A power of two, by which nothing is rounded.

@@ -196,6 +196,8 @@ TEST_F(MapFileTest, DescriptionsThatAreNoneAreRefused) {
                                                                         {"channels", 5},
                                                                         {"bits", 9},
                                                                         {"schema", 2},
+                                                                        {"texels", "int"},
+                                                                        {"texels", "uint"},  // has one channel
                                                                         {"address", "wrap"},
                                                                         {"dimension", "4d"},
                                                                         {"values", {{"a", "b"}}}}) {

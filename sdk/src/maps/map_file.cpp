@@ -88,8 +88,8 @@ Status write_image(const path& file, const MapData& map, const MapLayout& layout
 }
 
 std::string shape_text(const MapData& m) {
-  return fmt::format("{}x{}x{} texels, {} levels, {} channels, {} bits, {}", m.width, m.height, m.depth, m.levels,
-                     m.channels, m.bits, to_string(m.address));
+  return fmt::format("{}x{}x{} texels, {} levels, {} channels, {} bits{}, {}", m.width, m.height, m.depth, m.levels,
+                     m.channels, m.bits, m.is_uint ? " as uint" : "", to_string(m.address));
 }
 
 bool same_shape(const MapData& a, const MapData& b) {
@@ -104,7 +104,8 @@ bool is_plausible(const MapData& m) {
   const auto within = [](int value, int least, int most) { return value >= least && value <= most; };
   return within(m.width, 1, max_height_map_extent) && within(m.height, 1, max_height_map_extent) &&
          within(m.channels, 1, 4) && within(m.levels, 1, max_levels) && within(m.depth, 1, max_layers) &&
-         (m.depth == 1 || m.levels == 1) && (m.bits == 8 || m.bits == 16 || m.bits == 32);
+         (m.depth == 1 || m.levels == 1) && (m.bits == 8 || m.bits == 16 || m.bits == 32) &&
+         (!m.is_uint || (m.bits == 16 && m.channels == 4));
 }
 
 /// Throws for a word that is none.
@@ -113,6 +114,12 @@ MapDimension dimension_of(const std::string& word) {
     if (word == to_string(dimension)) return dimension;
   }
   throw std::runtime_error(fmt::format("the dimension is '{}'", word));
+}
+
+/// Throws for a word that is none.
+bool is_uint_of(const std::string& word) {
+  if (word != "unorm" && word != "uint") throw std::runtime_error(fmt::format("its texels are '{}'", word));
+  return word == "uint";
 }
 
 /// The map of a description, without its texels. Throws what the JSON library throws.
@@ -126,7 +133,7 @@ MapFile parse_description(const json& text) {
   map.levels = text.at("levels").get<int>();
   map.channels = text.at("channels").get<int>();
   map.bits = text.at("bits").get<int>();
-  map.is_uint = text.value("texels", "unorm") == "uint";
+  map.is_uint = is_uint_of(text.value("texels", "unorm"));
   map.dimension = dimension_of(text.at("dimension").get<std::string>());
   const Result<AddressMode> address = parse_address_mode(text.at("address").get<std::string>());
   if (!address) throw std::runtime_error(address.error().message);

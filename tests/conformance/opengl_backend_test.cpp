@@ -184,6 +184,16 @@ TEST(OpenGlBackend, SpecializationConstantsTakeTheProgramsBits) {
   }
 }
 
+TEST(OpenGlBackend, KeptProgramsAreNotTakenForOneAnother) {
+  const auto backend = open_opengl();
+  for (std::uint32_t round = 0; round < 2; ++round) {
+    for (std::uint32_t i = 0; i < RecentPrograms<opengl::Program>::capacity + 3; ++i) {
+      const Job job = constants_job({{1, i}});
+      EXPECT_EQ(run(*backend, job).read_backs, run(job).read_backs) << "constant " << i;
+    }
+  }
+}
+
 TEST(OpenGlSpecialization, DefinesFollowTheExtensionsAndKeepLineNumbers) {
   const std::string text =
       "#version 450\n\n#extension GL_ARB_shader_group_vote : require\nconst float S = SPIRV_CROSS_CONSTANT_ID_4;\n";
@@ -339,18 +349,23 @@ int live_objects() {
   return count;
 }
 
-TEST(OpenGlExecution, NothingOutlivesTheJob) {
+TEST(OpenGlExecution, OnlyProgramsOutliveTheJob) {
   const auto context = opengl::Context::open({});
   ASSERT_TRUE(context);
   const opengl::CurrentContext scope(**context);
   Job job = square_job(3);
   sample_texture(job, "unused", {});
   const opengl::ExecutionOptions options{opengl::query_limits(), false};
+  RecentPrograms<opengl::Program> recent;
   const auto drop = [](std::size_t, std::span<const std::byte>) {};
-  EXPECT_TRUE(opengl::run_job(
-      job, options, [] {}, drop));
-  EXPECT_FALSE(opengl::run_job(
-      wrong_primitive_job(), options, [] {}, drop));
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_TRUE(opengl::run_job(
+        job, options, recent, [] {}, drop));
+    EXPECT_FALSE(opengl::run_job(
+        wrong_primitive_job(), options, recent, [] {}, drop));
+    EXPECT_EQ(live_objects(), 2) << "the two programs";
+  }
+  recent.clear();
   EXPECT_EQ(live_objects(), 0);
   // The count sees what is there: two buffers, a texture and its sampler.
   job.buffers.pop_back();

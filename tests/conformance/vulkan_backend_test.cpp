@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "job/recent_programs.hpp"
 #include "support/jobs.hpp"
 
 namespace relievo {
@@ -227,6 +228,23 @@ void main() { result[0] = float(count); result[1] = gain; result[2] = kept; }
   std::memcpy(&gain_bits, &gain, sizeof gain);
   job.programs[0].constants = {{7, gain_bits}, {3, static_cast<std::uint32_t>(-5)}, {99, 1}};
   EXPECT_THAT(from_bytes<float>(run(job).read_backs[0]), ElementsAre(-5.0f, 0.25f, 42.0f));
+}
+
+TEST(VulkanCompute, KeptProgramsAreNotTakenForOneAnother) {
+  const std::string body = R"(
+layout(local_size_x = 1) in;
+layout(constant_id = 3) const uint value = 1u;
+layout(std430, set = 0, binding = 0) buffer Result { uint result; };
+void main() { result = value; }
+)";
+  const Job first = make_compute_job(make_compute("constant", body), 4);
+  for (std::uint32_t round = 0; round < 2; ++round) {
+    for (std::uint32_t i = 0; i < RecentPrograms<int>::capacity + 3; ++i) {
+      Job job = first;
+      job.programs[0].constants = {{3, i}};
+      EXPECT_THAT(from_bytes<std::uint32_t>(run(job).read_backs[0]), ElementsAre(i));
+    }
+  }
 }
 
 TEST(VulkanCompute, TwoRunsAreByteIdentical) {

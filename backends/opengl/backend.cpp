@@ -52,15 +52,20 @@ class OpenGlBackend final : public Backend {
   explicit OpenGlBackend(std::unique_ptr<Context> context)
       : context_(std::move(context)), options_{query_limits(), context_->debug()}, info_(read_info(options_.limits)) {}
 
+  ~OpenGlBackend() override {
+    const CurrentContext current(*context_);
+    programs_.clear();
+  }
+  OpenGlBackend(const OpenGlBackend&) = delete;
+  OpenGlBackend& operator=(const OpenGlBackend&) = delete;
+
   const BackendInfo& info() const override { return info_; }
 
   Result<JobResult> execute(const Job& job) override {
-    std::vector<std::vector<std::byte>> read_backs;
-    const auto keep = [&](std::size_t, std::span<const std::byte> b) { read_backs.emplace_back(b.begin(), b.end()); };
-    Result<JobResult> result = run(
-        job, [] {}, keep);
-    if (result) result->read_backs = std::move(read_backs);
-    return result;
+    return keep_read_backs([&](const TakeReadBack& keep) {
+      return run(
+          job, [] {}, keep);
+    });
   }
   Result<JobResult> execute_once(Job job, const TakeReadBack& take) override {
     return run(
@@ -79,7 +84,7 @@ class OpenGlBackend final : public Backend {
 
   Result<JobResult> run_within_memory(const Job& job, const std::function<void()>& uploaded,
                                       const TakeReadBack& take) try {
-    return run_job(job, options_, uploaded, take);
+    return run_job(job, options_, programs_, uploaded, take);
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::backend, "backend.memory", fmt::format("job '{}' does not fit into memory", job.name));
   }
@@ -95,6 +100,7 @@ class OpenGlBackend final : public Backend {
   }
 
   std::unique_ptr<Context> context_;
+  RecentPrograms<Program> programs_;
   ExecutionOptions options_;
   BackendInfo info_;
 };

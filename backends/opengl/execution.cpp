@@ -30,15 +30,15 @@ Status run_dispatch(const Dispatch& dispatch) {
   return {};
 }
 
-Status run_command(const Job& job, const std::vector<Program>& programs, const Resources& resources,
+Status run_command(const Job& job, const std::vector<std::shared_ptr<Program>>& programs, const Resources& resources,
                    const Command& command, CommandTimers& timers) {
   const auto* dispatch = std::get_if<Dispatch>(&command);
   const auto* draw = std::get_if<Draw>(&command);
   const int index = dispatch != nullptr ? dispatch->program : draw->program;
   bind_resources(job, resources, index, dispatch != nullptr ? dispatch->resources : draw->resources);
-  glUseProgram(programs[index].handle.get());
+  glUseProgram(programs[index]->handle.get());
   timers.begin_command();
-  auto status = dispatch != nullptr ? run_dispatch(*dispatch) : run_draw(job, resources, programs[index], *draw);
+  auto status = dispatch != nullptr ? run_dispatch(*dispatch) : run_draw(job, resources, *programs[index], *draw);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
   timers.end_command();
   glUseProgram(0);  // a program in use is not deleted
@@ -51,8 +51,8 @@ Status check(const std::string& what, bool debug) {
   return debug ? Status{} : status;
 }
 
-Status run_commands(const Job& job, const std::vector<Program>& programs, const Resources& resources, bool debug,
-                    CommandTimers& timers) {
+Status run_commands(const Job& job, const std::vector<std::shared_ptr<Program>>& programs, const Resources& resources,
+                    bool debug, CommandTimers& timers) {
   int number = 0;
   for (const Command& command : job.commands) {
     const std::string what = fmt::format("job '{}', command {}", job.name, number++);
@@ -67,10 +67,10 @@ Status run_commands(const Job& job, const std::vector<Program>& programs, const 
 
 }  // namespace
 
-Result<JobResult> run_job(const Job& job, const ExecutionOptions& options, const std::function<void()>& uploaded,
-                          const TakeReadBack& take) {
+Result<JobResult> run_job(const Job& job, const ExecutionOptions& options, RecentPrograms<Program>& recent,
+                          const std::function<void()>& uploaded, const TakeReadBack& take) {
   if (auto status = check_limits(job, options.limits); !status) return tl::unexpected(std::move(status.error()));
-  const auto programs = build_programs(job);
+  const auto programs = build_programs(job, recent);
   if (!programs) return tl::unexpected(programs.error());
   const Resources resources = upload_resources(job);
   if (auto status = check(fmt::format("While uploading job '{}'", job.name), options.debug); !status) {

@@ -96,12 +96,16 @@ Result<Program> build_program(const ShaderProgram& program) {
   return result;
 }
 
-Result<std::vector<Program>> build_programs(const Job& job) {
-  std::vector<Program> programs;
+Result<std::vector<std::shared_ptr<Program>>> build_programs(const Job& job, RecentPrograms<Program>& recent) {
+  std::vector<std::shared_ptr<Program>> programs;
   for (const ShaderProgram& description : job.programs) {
+    if (auto kept = recent.find(description)) {
+      programs.push_back(std::move(kept));
+      continue;
+    }
     auto program = build_program(description);
     if (!program) return tl::unexpected(std::move(program.error()));
-    programs.push_back(std::move(*program));
+    programs.push_back(recent.keep(description, std::move(*program)));
   }
   return programs;
 }

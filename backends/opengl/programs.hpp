@@ -1,9 +1,11 @@
 /// The Job's programs, compiled by the driver from their emitted GLSL.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "handles.hpp"
+#include "job/recent_programs.hpp"
 #include "relievo/job.hpp"
 #include "relievo/result.hpp"
 
@@ -19,6 +21,7 @@ struct Program {
 /// "backend.binding-contract" for a resource that the shaders use and the contract lacks.
 Result<Program> build_program(const ShaderProgram& program);
 
-Result<std::vector<Program>> build_programs(const Job& job);
+/// Builds those that are not kept in `recent`, which keeps them then.
+Result<std::vector<std::shared_ptr<Program>>> build_programs(const Job& job, RecentPrograms<Program>& recent);
 
 }  // namespace relievo::opengl

@@ -15,11 +15,11 @@ namespace {
 
 class Execution {
  public:
-  Execution(Device& device, const Job& job, VkPipelineCache cache)
+  Execution(Device& device, const Job& job, VkPipelineCache cache, RecentPrograms<DeviceProgram>& recent)
       : device_(device),
         job_(job),
         resources_(device, job),
-        pipelines_(device, job, cache),
+        pipelines_(device, job, cache, recent),
         descriptors_(device, job),
         timestamps_(device, job.commands.size()) {}
 
@@ -176,9 +176,9 @@ class Execution {
 
 }  // namespace
 
-JobResult run_job(Device& device, const Job& job, VkPipelineCache cache, const std::function<void()>& uploaded,
-                  const TakeReadBack& take) {
-  return Execution(device, job, cache).run(uploaded, take);
+JobResult run_job(Device& device, const Job& job, VkPipelineCache cache, RecentPrograms<DeviceProgram>& recent,
+                  const std::function<void()>& uploaded, const TakeReadBack& take) {
+  return Execution(device, job, cache, recent).run(uploaded, take);
 }
 
 }  // namespace relievo::vulkan

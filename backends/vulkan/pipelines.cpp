@@ -42,14 +42,14 @@ VkCullModeFlags cull_flags(CullMode cull) {
 
 /// The vertex buffer's layout; the info points into the lists.
 struct VertexInput {
-  explicit VertexInput(const Draw& draw) {
-    for (const VertexAttribute& attribute : draw.attributes) {
+  explicit VertexInput(const DrawState& state) {
+    for (const VertexAttribute& attribute : state.attributes) {
       attributes.push_back({.location = static_cast<std::uint32_t>(attribute.location),
                             .format = vertex_format(attribute.format),
                             .offset = static_cast<std::uint32_t>(attribute.offset)});
     }
-    binding.stride = static_cast<std::uint32_t>(draw.vertex_stride);
-    info.vertexBindingDescriptionCount = draw.attributes.empty() ? 0 : 1;
+    binding.stride = static_cast<std::uint32_t>(state.vertex_stride);
+    info.vertexBindingDescriptionCount = state.attributes.empty() ? 0 : 1;
     info.pVertexBindingDescriptions = &binding;
     info.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(attributes.size());
     info.pVertexAttributeDescriptions = attributes.data();
@@ -62,45 +62,37 @@ struct VertexInput {
   VkPipelineVertexInputStateCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
 };
 
-bool same_attributes(const Draw& a, const Draw& b) {
-  return a.vertex_stride == b.vertex_stride &&
-         std::equal(a.attributes.begin(), a.attributes.end(), b.attributes.begin(), b.attributes.end(),
-                    [](const VertexAttribute& x, const VertexAttribute& y) {
-                      return x.location == y.location && x.format == y.format && x.offset == y.offset;
-                    });
-}
-
 }  // namespace
 
-Pipelines::Pipelines(const Device& device, const Job& job, VkPipelineCache cache)
+Pipelines::Pipelines(const Device& device, const Job& job, VkPipelineCache cache, RecentPrograms<DeviceProgram>& recent)
     : device_(device), job_(job), cache_(cache) {
-  for (const ShaderProgram& program : job.programs) programs_.push_back(load_program(device, program));
+  for (const ShaderProgram& source : job.programs) {
+    auto kept = recent.find(source);
+    programs_.push_back(kept ? std::move(kept) : recent.keep(source, load_program(device, source)));
+  }
 }
 
 VkPipeline Pipelines::compute(int program) {
-  const auto found = std::find_if(compute_.begin(), compute_.end(), [&](const auto& e) { return e.first == program; });
-  if (found != compute_.end()) return found->second.get();
-  return compute_.emplace_back(program, make_compute(program)).second.get();
+  Unique<VkPipeline>& pipeline = programs_[static_cast<std::size_t>(program)]->compute;
+  if (!pipeline) pipeline = make_compute(program);
+  return pipeline.get();
 }
 
 VkPipeline Pipelines::graphics(const Draw& draw) {
-  const auto found = std::find_if(graphics_.begin(), graphics_.end(),
-                                  [&](const auto& entry) { return same_pipeline(*entry.first, draw); });
-  if (found != graphics_.end()) return found->second.get();
-  return graphics_.emplace_back(&draw, make_graphics(draw)).second.get();
+  auto& made = programs_[static_cast<std::size_t>(draw.program)]->graphics;
+  DrawState state = state_of(draw);
+  const auto found = std::find_if(made.begin(), made.end(), [&](const auto& entry) { return entry.first == state; });
+  if (found != made.end()) return found->second.get();
+  Unique<VkPipeline> pipeline = make_graphics(draw.program, state);
+  return made.emplace_back(std::move(state), std::move(pipeline)).second.get();
 }
 
-std::vector<VkFormat> Pipelines::color_formats(const Draw& draw) const {
-  std::vector<VkFormat> formats;
+DrawState Pipelines::state_of(const Draw& draw) const {
+  DrawState state = {draw.cull, draw.depth_target >= 0, {}, draw.vertex_stride, draw.attributes};
   for (const int target : draw.color_targets) {
-    formats.push_back(image_format(job_.textures[static_cast<std::size_t>(target)].format));
+    state.color_formats.push_back(image_format(job_.textures[static_cast<std::size_t>(target)].format));
   }
-  return formats;
-}
-
-bool Pipelines::same_pipeline(const Draw& a, const Draw& b) const {
-  return a.program == b.program && a.cull == b.cull && (a.depth_target < 0) == (b.depth_target < 0) &&
-         color_formats(a) == color_formats(b) && same_attributes(a, b);
+  return state;
 }
 
 Unique<VkPipeline> Pipelines::make_compute(int index) const {
@@ -115,11 +107,11 @@ Unique<VkPipeline> Pipelines::make_compute(int index) const {
   return device_.own(pipeline, device_.vk.vkDestroyPipeline);
 }
 
-Unique<VkPipeline> Pipelines::make_graphics(const Draw& draw) const {
-  const ShaderProgram& source = job_.programs[static_cast<std::size_t>(draw.program)];
+Unique<VkPipeline> Pipelines::make_graphics(int index, const DrawState& state) const {
+  const ShaderProgram& source = job_.programs[static_cast<std::size_t>(index)];
   const Specialization constants(source);
-  const auto stages = stage_infos(source, program(draw.program), constants);
-  const VertexInput vertex_input(draw);
+  const auto stages = stage_infos(source, program(index), constants);
+  const VertexInput vertex_input(state);
   const VkPipelineInputAssemblyStateCreateInfo assembly = {
       .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
       .topology = tessellates(source) ? VK_PRIMITIVE_TOPOLOGY_PATCH_LIST : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
@@ -131,18 +123,17 @@ Unique<VkPipeline> Pipelines::make_graphics(const Draw& draw) const {
   const VkPipelineRasterizationStateCreateInfo rasterization = {
       .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
       .polygonMode = VK_POLYGON_MODE_FILL,
-      .cullMode = cull_flags(draw.cull),
+      .cullMode = cull_flags(state.cull),
       .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
       .lineWidth = 1};
   const VkPipelineMultisampleStateCreateInfo multisample = {
       .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO, .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-  const bool has_depth = draw.depth_target >= 0;
   const VkPipelineDepthStencilStateCreateInfo depth = {
       .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-      .depthTestEnable = has_depth,
-      .depthWriteEnable = has_depth,
+      .depthTestEnable = state.has_depth,
+      .depthWriteEnable = state.has_depth,
       .depthCompareOp = VK_COMPARE_OP_LESS_OR_EQUAL};
-  const std::vector<VkFormat> formats = color_formats(draw);
+  const std::vector<VkFormat>& formats = state.color_formats;
   const std::vector<VkPipelineColorBlendAttachmentState> attachments(formats.size(), {.colorWriteMask = 0xf});
   const VkPipelineColorBlendStateCreateInfo blend = {.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
                                                      .attachmentCount = static_cast<std::uint32_t>(attachments.size()),
@@ -155,7 +146,7 @@ Unique<VkPipeline> Pipelines::make_graphics(const Draw& draw) const {
       .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
       .colorAttachmentCount = static_cast<std::uint32_t>(formats.size()),
       .pColorAttachmentFormats = formats.data(),
-      .depthAttachmentFormat = has_depth ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_UNDEFINED};
+      .depthAttachmentFormat = state.has_depth ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_UNDEFINED};
   const VkGraphicsPipelineCreateInfo info = {.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
                                              .pNext = &rendering,
                                              .stageCount = static_cast<std::uint32_t>(stages.size()),
@@ -169,7 +160,7 @@ Unique<VkPipeline> Pipelines::make_graphics(const Draw& draw) const {
                                              .pDepthStencilState = &depth,
                                              .pColorBlendState = &blend,
                                              .pDynamicState = &dynamic,
-                                             .layout = program(draw.program).layout.get()};
+                                             .layout = program(index).layout.get()};
   VkPipeline pipeline = VK_NULL_HANDLE;
   check(device_.vk.vkCreateGraphicsPipelines(device_.handle(), cache_, 1, &info, nullptr, &pipeline),
         fmt::format("compiling program \"{}\"", source.name));

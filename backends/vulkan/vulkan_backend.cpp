@@ -61,12 +61,10 @@ class VulkanBackend final : public Backend {
   const BackendInfo& info() const override { return info_; }
 
   Result<JobResult> execute(const Job& job) override {
-    std::vector<std::vector<std::byte>> read_backs;
-    const auto keep = [&](std::size_t, std::span<const std::byte> b) { read_backs.emplace_back(b.begin(), b.end()); };
-    Result<JobResult> result = run(
-        job, [] {}, keep);
-    if (result) result->read_backs = std::move(read_backs);
-    return result;
+    return keep_read_backs([&](const TakeReadBack& keep) {
+      return run(
+          job, [] {}, keep);
+    });
   }
   Result<JobResult> execute_once(Job job, const TakeReadBack& take) override {
     return run(
@@ -76,7 +74,7 @@ class VulkanBackend final : public Backend {
  private:
   Result<JobResult> run(const Job& job, const std::function<void()>& uploaded, const TakeReadBack& take) try {
     if (const Status valid = validate_job(job); !valid) return tl::unexpected(valid.error());
-    JobResult result = run_job(device_, job, cache_.handle(), uploaded, take);
+    JobResult result = run_job(device_, job, cache_.handle(), programs_, uploaded, take);
     const std::string cache_problem = cache_.save();
     result.messages = device_.messages().take();
     if (!cache_problem.empty()) result.messages.push_back(cache_problem);
@@ -96,6 +94,7 @@ class VulkanBackend final : public Backend {
 
   Device device_;
   PipelineCache cache_;
+  RecentPrograms<DeviceProgram> programs_;
   BackendInfo info_;
 };
 

@@ -48,12 +48,16 @@ class Backend {
   virtual ~Backend() = default;
   virtual const BackendInfo& info() const = 0;  ///< thread-safe
   /// Runs the job to completion. Errors: "job.*" for a Job that is not valid, "backend.*" when the API refuses.
-  /// Nothing of the job outlives the call.
+  /// Nothing of the job outlives the call but its programs as the driver has compiled them: the last 16 are kept, for
+  /// jobs with the same.
   virtual Result<JobResult> execute(const Job& job) = 0;
   /// The same with as little memory as may be, for a job that is not needed again: its contents may be freed once the
   /// device has them, and each read-back is handed to `take`, in order, instead of being kept in the result.
   virtual Result<JobResult> execute_once(Job job, const TakeReadBack& take);
 };
+
+/// For backends that run every job as execute_once does: runs with a taker that keeps the read-backs in the result.
+Result<JobResult> keep_read_backs(const std::function<Result<JobResult>(const TakeReadBack& keep)>& run);
 
 /// What a backend folder provides: `extern const BackendFactory relievo::backends::<folder name>_factory;`
 struct BackendFactory {

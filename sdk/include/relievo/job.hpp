@@ -82,6 +82,7 @@ struct BindingSlot {
   int set = 0, binding = 0;
   std::string name;  ///< the GLSL name: of the block for buffers, of the uniform for textures
   int gl_slot = 0;
+  friend bool operator==(const BindingSlot&, const BindingSlot&) = default;
 };
 
 /// One shader of a program: SPIR-V for Vulkan, text for APIs that compile it themselves. Entry point "main".
@@ -89,11 +90,13 @@ struct ShaderCode {
   ShaderStage stage = ShaderStage::compute;
   std::vector<std::uint32_t> spirv;
   std::map<std::string, std::string> text;  ///< target name ("glsl-450") → source
+  friend bool operator==(const ShaderCode&, const ShaderCode&) = default;
 };
 
 struct SpecializationValue {
   std::uint32_t id = 0;
   std::uint32_t bits = 0;  ///< int, uint, or the bits of a float
+  friend bool operator==(const SpecializationValue&, const SpecializationValue&) = default;
 };
 
 struct ShaderProgram {
@@ -101,6 +104,7 @@ struct ShaderProgram {
   std::vector<ShaderCode> shaders;
   std::vector<BindingSlot> bindings;
   std::vector<SpecializationValue> constants;
+  friend bool operator==(const ShaderProgram&, const ShaderProgram&) = default;
 };
 
 /// Connects one slot of the program's contract to a buffer or texture of the job (an index into its vector).
@@ -121,6 +125,7 @@ struct VertexAttribute {
   int location = 0;
   Format format = Format::rgb32_float;  ///< a 32-bit format
   int offset = 0;                       ///< bytes
+  friend bool operator==(const VertexAttribute&, const VertexAttribute&) = default;
 };
 
 /// One pass over its targets: optionally clears, then draws triangles. Depth is in [0,1], smaller is nearer; depth test

@@ -28,6 +28,14 @@ Result<JobResult> Backend::execute_once(Job job, const TakeReadBack& take) {
   return result;
 }
 
+Result<JobResult> keep_read_backs(const std::function<Result<JobResult>(const TakeReadBack& keep)>& run) {
+  std::vector<std::vector<std::byte>> read_backs;
+  Result<JobResult> result =
+      run([&](std::size_t, std::span<const std::byte> bytes) { read_backs.emplace_back(bytes.begin(), bytes.end()); });
+  if (result) result->read_backs = std::move(read_backs);
+  return result;
+}
+
 std::vector<BackendInfo> list_backends() {
   std::vector<BackendInfo> infos;
   for (const BackendFactory* factory : backend_table()) infos.push_back(factory->probe());

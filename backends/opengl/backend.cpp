@@ -24,7 +24,7 @@ BackendInfo named_info() {
 }
 
 /// Asks the current context, which is at least 4.5: there, all but the clock is core.
-BackendInfo read_info(const Limits& limits) {
+BackendInfo read_info(const Limits& limits, bool is_software) {
   BackendInfo info = named_info();
   info.available = true;
   info.device = gl_string(GL_RENDERER);
@@ -33,6 +33,7 @@ BackendInfo read_info(const Limits& limits) {
   info.features = {"compute",     "geometry",       "tessellation",   "explicit_lod",
                    "texture_3d",  "gather",         "vertex_texture", "dynamic_loops",
                    "depth_write", "linear_float32", "validation",     "extended_images"};
+  if (is_software) info.features.insert("software");
   if (limits.timestamp_bits > 0) info.features.insert("timestamps");
   info.max_storage_buffer = static_cast<std::size_t>(limits.storage_block_size);
   return info;
@@ -50,7 +51,9 @@ class OpenGlBackend final : public Backend {
 
   /// `context` is current.
   explicit OpenGlBackend(std::unique_ptr<Context> context)
-      : context_(std::move(context)), options_{query_limits(), context_->debug()}, info_(read_info(options_.limits)) {}
+      : context_(std::move(context)),
+        options_{query_limits(), context_->debug()},
+        info_(read_info(options_.limits, context_->is_software())) {}
 
   ~OpenGlBackend() override {
     const CurrentContext current(*context_);

@@ -36,6 +36,7 @@ BackendInfo info_of(const DeviceTraits& device) {
   if (device.features.shaderStorageImageExtendedFormats) info.features.insert("extended_images");
   if (device.features.geometryShader) info.features.insert("geometry");
   if (device.features.tessellationShader) info.features.insert("tessellation");
+  if (device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) info.features.insert("software");
   if (device.timestamp_bits > 0) info.features.insert("timestamps");
   if (device.filters_float32) info.features.insert("linear_float32");
   if (has_memory(device.memory, shared_with_host)) info.features.insert("shared_memory");

@@ -142,6 +142,8 @@ Status run_bench(const Context& context, const BenchOptions& options) {
     fmt::print("{}\n", rows.dump(2));
   } else {
     print_table(rows);
+    const std::string own = own_values_text(*registry, (*backend)->info());
+    if (!own.empty()) fmt::print("{}: {}, unless --set says otherwise\n", (*backend)->info().device, own);
   }
   return {};
 }

@@ -1,6 +1,7 @@
 #include "common.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 #include <algorithm>
 #include <cmath>
@@ -119,6 +120,14 @@ Result<Settings> parse_settings(const Registry& registry, const std::vector<std:
     settings.values[key] = *value;
   }
   return settings;
+}
+
+std::string own_values_text(const Registry& registry, const BackendInfo& backend) {
+  const std::map<std::string, const Parameter*> known = known_parameters(registry);
+  std::vector<std::string> texts;
+  for (const auto& [name, value] : values_on(registry, backend, {}))
+    texts.push_back(fmt::format("{}={}", name, value_text(*known.at(name), value)));
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 namespace {

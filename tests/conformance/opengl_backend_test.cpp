@@ -88,6 +88,7 @@ TEST(OpenGlBackend, ReportsDeviceAndFeatures) {
   EXPECT_NE(info->device, "");
   EXPECT_THAT(info->api_version, ContainsRegex("^4\\.[56]"));
   EXPECT_THAT(info->features, IsSupersetOf({"compute", "geometry", "tessellation", "timestamps", "validation"}));
+  EXPECT_EQ(info->features.contains("software"), info->device.find("llvmpipe") != std::string::npos);
 }
 
 TEST(OpenGlBackend, SelectsTheDeviceByPartOfItsName) {

@@ -54,6 +54,11 @@ TEST(VulkanInfo, NamesDeviceDriverAndFeatures) {
   }
 }
 
+TEST(VulkanInfo, SaysWhetherTheDriverRunsOnTheCpu) {
+  const BackendInfo& info = vulkan().info();
+  EXPECT_EQ(info.features.contains("software"), info.device.find("llvmpipe") != std::string::npos);
+}
+
 TEST(VulkanInfo, ProbeAgreesWithTheOpenedBackend) {
   const std::vector<BackendInfo> all = list_backends();
   const auto probed = std::find_if(all.begin(), all.end(), [](const auto& info) { return info.name == "vulkan"; });

@@ -47,12 +47,36 @@ TEST(DescriptorAxes, HaveNamedValuesAndWhatTheyBring) {
             "the value of \"detail\" is \"medium\"; one of low, high is expected");
 }
 
+/// A registry of one technique with an axis whose value "high" suits software drivers and needs `gather`.
+Registry registry_with_software_value() {
+  Registry registry;
+  registry.techniques["mine"] =
+      *parse_technique(with_axis("title = \"Detail\"\nvalues = [\"low\", \"high\"]\ndefault = \"low\"\n"
+                                 "software = \"high\"\nfeatures = {high = [\"gather\"]}\n"),
+                       "techniques/mine/technique.toml");
+  return registry;
+}
+
+TEST(ValuesOn, ASoftwareDriverAreWhatSuitsItWhereAxesAreLeftOpen) {
+  const Registry registry = registry_with_software_value();
+  BackendInfo backend;
+  backend.features = {"gather", "software"};
+  using Values = std::map<std::string, double>;
+  EXPECT_EQ(values_on(registry, backend, {}), (Values{{"mine.detail", 1}}));
+  EXPECT_EQ(values_on(registry, backend, {{"mine.detail", 0}}), (Values{{"mine.detail", 0}})) << "was asked for";
+  backend.features = {"software"};
+  EXPECT_EQ(values_on(registry, backend, {}), Values()) << "lacks what the value needs";
+  backend.features = {"gather"};
+  EXPECT_EQ(values_on(registry, backend, {}), Values()) << "is no software driver";
+}
+
 TEST(DescriptorAxes, AreRefusedWithThePlaceAndTheNearestName) {
   const std::string start = "title = \"Detail\"\nvalues = [\"low\", \"high\"]\n";
   const std::tuple<std::string, const char*, const char*> faults[] = {
       {"title = \"D\"\nvalues = [\"low\"]\ndefault = \"low\"\n", "describe.range", "two or more"},
       {start + "default = \"hihg\"\n", "describe.range", "the nearest is \"high\""},
       {start, "describe.missing-key", "\"default\""},
+      {start + "default = \"low\"\nsoftware = \"hihg\"\n", "describe.range", "\"software\""},
       {start + "default = \"low\"\nmaps = {hgh = [\"normal\"]}\n", "describe.range", "the nearest is \"high\""},
       {start + "default = \"low\"\nfeatures = {high = [\"gathr\"]}\n", "describe.unknown-feature", "\"gather\""},
       {start + "default = \"low\"\nbinding = \"uniform\"\nbindings = [\"macro\"]\n", "describe.range", "leave out"},

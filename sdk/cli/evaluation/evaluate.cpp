@@ -39,6 +39,8 @@ Result<Evaluation> evaluate(const EvaluationInput& input) {
   Result<OpenBackends> opened = open_backends(input.backends, evaluation.backends, evaluation.not_run);
   if (!opened) return tl::unexpected(opened.error());
   OpenBackends& backends = *opened;
+  for (const BackendInfo& info : evaluation.backends)
+    evaluation.own_values.push_back(own_values_text(*input.registry, info));
   Progress progress("evaluate", steps_of(input, backends.size()));
   input.clock->end("starting");
   const std::pair<const char*, decltype(&evaluate_rays)> parts[] = {

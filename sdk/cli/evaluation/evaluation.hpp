@@ -124,6 +124,7 @@ struct NotRun {
 
 struct Evaluation {
   std::vector<BackendInfo> backends;
+  std::vector<std::string> own_values;  ///< of each backend: own_values_text
   std::vector<RayRow> rays;
   std::vector<RayAgreement> ray_agreements;
   std::vector<PictureRow> pictures;

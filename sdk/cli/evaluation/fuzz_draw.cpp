@@ -135,8 +135,10 @@ std::map<std::string, double> draw_values(const Registry& registry, const std::s
   std::map<std::string, double> values;
   const auto draw = [&](const std::string& owner, const std::vector<Parameter>& parameters) {
     for (const Parameter& p : parameters) {
-      // Axes stay at their defaults: their rules forbid some combinations, and tests/conformance draws every value.
+      // Axes stay at their defaults, or in every other round at what suits software drivers: their rules forbid some
+      // combinations, and tests/conformance draws every value.
       if (p.choices.empty()) values[owner + "." + p.name] = draw_value(random, p);
+      if (p.software_value) values[owner + "." + p.name] = round % 2 == 0 ? p.value : *p.software_value;
     }
   };
   draw("ray", registry.stages.at("ray").parameters);

@@ -34,11 +34,11 @@ struct Answers {
   std::vector<double> seconds;  ///< medians; empty: not timed
 };
 
-std::vector<TraceRequest> requests_of(const RayRun& run, bool count) {
+std::vector<TraceRequest> requests_of(const RayRun& run, const BackendInfo& backend, bool count) {
   std::vector<TraceRequest> list;
   for (HeightFilter filter : run.filters) {
     for (const std::string& technique : run.input.techniques) {
-      TraceRequest request{technique, filter, count, run.input.values};
+      TraceRequest request{technique, filter, count, values_on(*run.input.registry, backend, run.input.values)};
       request.values.try_emplace("ray.scale", run.ray_case.scale);
       list.push_back(std::move(request));
     }
@@ -75,7 +75,7 @@ Status bake_maps(const RayRun& run, Backend& backend, MapSet& maps, std::vector<
 
 Result<JobResult> execute(const RayRun& run, Backend& backend, const MapSet& maps, bool count,
                           std::vector<std::string>& messages) {
-  Result<Job> job = make_trace_job(*run.input.registry, maps, run.rays, requests_of(run, count),
+  Result<Job> job = make_trace_job(*run.input.registry, maps, run.rays, requests_of(run, backend.info(), count),
                                    backend.info().shader_target, count ? 1 : run.input.repeats, count);
   if (!job) return tl::unexpected(job.error());
   Result<JobResult> result = backend.execute(*job);

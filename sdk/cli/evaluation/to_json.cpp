@@ -46,6 +46,7 @@ nlohmann::json to_json(const Evaluation& e) {
                 {"driver", b.driver},
                 {"api_version", b.api_version}};
   });
+  result["own_values"] = e.own_values;
   result["rays"] = list(e.rays, [](const RayRow& r) {
     json row = to_json(r.error);
     row.update({{"case", r.case_name},

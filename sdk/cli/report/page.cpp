@@ -80,10 +80,13 @@ std::string checks_section(const Report& report) {
 std::string machines_section(const Report& report) {
   const Evaluation& e = report.evaluation;
   std::vector<std::vector<Cell>> rows;
-  for (const BackendInfo& b : e.backends)
-    rows.push_back({{b.name, "name"}, {b.title}, {b.device}, {b.driver}, {b.api_version}});
+  for (std::size_t i = 0; i < e.backends.size(); ++i) {
+    const BackendInfo& b = e.backends[i];
+    rows.push_back({{b.name, "name"}, {b.title}, {b.device}, {b.driver}, {b.api_version}, {e.own_values[i]}});
+  }
   std::string html =
-      "<section><h2>What ran where</h2>\n" + table({{"backend"}, {"API"}, {"device"}, {"driver"}, {"version"}}, rows);
+      "<section><h2>What ran where</h2>\n" +
+      table({{"backend"}, {"API"}, {"device"}, {"driver"}, {"version"}, {"axes that it runs quicker so"}}, rows);
   if (e.not_run.empty()) return html + "<p>Everything that was asked for ran.</p></section>\n";
   std::vector<std::vector<Cell>> missing;
   for (const NotRun& n : e.not_run) missing.push_back({{n.what}, {n.reason}});

@@ -38,8 +38,9 @@ struct MapRun {
   bool baked = false;
 };
 
-TraceRequest request_of(const MapRun& run, const Setting& setting, bool count_cost) {
-  TraceRequest request{setting.technique, setting.filter, count_cost, run.input.values};
+TraceRequest request_of(const MapRun& run, const BackendInfo& backend, const Setting& setting, bool count_cost) {
+  TraceRequest request{setting.technique, setting.filter, count_cost,
+                       values_on(*run.input.registry, backend, run.input.values)};
   request.values.try_emplace("ray.scale", run.ray_case.scale);
   if (!setting.loop.empty()) request.values[setting.technique + "." + setting.loop] = setting.count;
   return request;
@@ -97,7 +98,7 @@ bool shown_as_heat(const MapRun& run, const Setting& setting, const Sweep& sweep
 Status count_some(MapRun& run, Backend& backend, std::size_t first, std::size_t last, std::vector<SweepRow>& rows,
                   Sweep& sweep) {
   std::vector<TraceRequest> requests;
-  for (std::size_t k = first; k < last; ++k) requests.push_back(request_of(run, run.settings[k], true));
+  for (std::size_t k = first; k < last; ++k) requests.push_back(request_of(run, backend.info(), run.settings[k], true));
   Result<Job> job =
       make_trace_job(*run.input.registry, run.maps, run.rays, requests, backend.info().shader_target, 1, true);
   if (!job) return tl::unexpected(job.error());
@@ -122,10 +123,11 @@ Status count_some(MapRun& run, Backend& backend, std::size_t first, std::size_t 
 Status time_all(MapRun& run, Backend& backend, bool has_reference, std::vector<SweepRow>& rows) {
   std::vector<TraceRequest> requests;
   if (has_reference) {
-    TraceRequest reference{reference_technique, HeightFilter::hardware, false, {{"ray.scale", run.ray_case.scale}}};
+    TraceRequest reference{reference_technique, HeightFilter::hardware, false,
+                           values_on(*run.input.registry, backend.info(), {{"ray.scale", run.ray_case.scale}})};
     requests.push_back(reference);
   }
-  for (const Setting& setting : run.settings) requests.push_back(request_of(run, setting, false));
+  for (const Setting& setting : run.settings) requests.push_back(request_of(run, backend.info(), setting, false));
   Result<Job> job = make_trace_job(*run.input.registry, run.maps, run.rays, requests, backend.info().shader_target,
                                    run.plan.repeats, false);
   if (!job) return tl::unexpected(job.error());

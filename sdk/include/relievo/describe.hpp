@@ -66,6 +66,7 @@ struct Parameter {
   std::vector<std::vector<std::string>> maps;  ///< an axis: the maps that each value needs beside the owner's
   std::vector<FeatureSet> features;            ///< an axis: the features that each value needs
   std::vector<Rule> rules;                     ///< an axis: what its values require and exclude
+  std::optional<double> software_value;        ///< an axis: the same results sooner on drivers that use the CPU
   std::string file;
   int line = 0;  ///< where it was declared
 };

@@ -32,6 +32,11 @@ struct PreparedProgram {
 /// `values` of owners that the permutation has not are dropped.
 Result<PreparedProgram> prepare(const Registry& registry, Permutation permutation, std::string_view shader_target);
 
+/// `values`, and for axes that they leave open what suits the backend's device: on a software driver the value that the
+/// descriptor has for one (Parameter::software_value), if the backend has its features. `trace` and `render` do.
+std::map<std::string, double> values_on(const Registry& registry, const BackendInfo& backend,
+                                        std::map<std::string, double> values);
+
 /// A Job that traces all rays with each request in turn, `repeats` times over, interleaved.
 /// Rays keep their order; whole tiles of u and v are split off first, so that uv may be far from 0.
 /// `maps` holds every map that the techniques require. Errors: as of compose and compile; "trace.no-rays".

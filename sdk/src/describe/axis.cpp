@@ -46,17 +46,15 @@ void read_features_of_values(TomlReader& table, Parameter& axis) {
   }
 }
 
-void read_default(TomlReader& table, Parameter& axis) {
-  const std::string text = table.text("default");
+std::optional<double> read_value(TomlReader& table, std::string_view key, const Parameter& axis) {
+  const std::string text = table.text(key);
   const std::size_t index = index_of(axis.choices, text);
-  if (index == axis.choices.size()) {
-    table.report("describe.range",
-                 fmt::format("\"default\" of the {} is {}; one of its values is expected{}", table.label(), quote(text),
-                             suggest(text, axis.choices)),
-                 "default");
-    return;
-  }
-  axis.value = static_cast<double>(index);
+  if (index < axis.choices.size()) return static_cast<double>(index);
+  table.report("describe.range",
+               fmt::format("\"{}\" of the {} is {}; one of its values is expected{}", key, table.label(), quote(text),
+                           suggest(text, axis.choices)),
+               key);
+  return std::nullopt;
 }
 
 void read_axis_rules(TomlReader& table, const std::string& owner, Parameter& axis) {
@@ -99,7 +97,8 @@ void read_axis(TomlReader& table, const std::string& owner, Parameter& axis) {
         "values");
   }
   axis.maximum = std::max(0.0, static_cast<double>(axis.choices.size()) - 1);
-  read_default(table, axis);
+  axis.value = read_value(table, "default", axis).value_or(0);
+  if (table.has("software")) axis.software_value = read_value(table, "software", axis);
   read_bindings(table, axis);
   axis.maps = read_needs(table, "maps", axis);
   read_features_of_values(table, axis);

@@ -22,6 +22,7 @@ nlohmann::json parameters_json(const std::vector<Parameter>& parameters) {
     nlohmann::json rules = nlohmann::json::array();
     for (const Rule& rule : p.rules) rules.push_back(to_string(rule));
     list.back().update({{"values", p.choices}, {"maps", p.maps}, {"features", p.features}, {"rules", rules}});
+    if (p.software_value) list.back()["software"] = value_text(p, *p.software_value);
   }
   return list;
 }

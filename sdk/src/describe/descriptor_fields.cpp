@@ -71,7 +71,7 @@ Parameter read_parameter(TomlReader& table, const std::string& name) {
 }
 
 Parameter read_one_axis(TomlReader& table, const std::string& name, const std::string& owner) {
-  table.allow_keys({"title", "values", "default", "binding", "bindings", "maps", "features", "rule"});
+  table.allow_keys({"title", "values", "default", "binding", "software", "bindings", "maps", "features", "rule"});
   Parameter axis = read_shared(table, name);
   read_axis(table, owner, axis);
   return axis;

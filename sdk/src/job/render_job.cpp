@@ -197,7 +197,9 @@ Result<std::vector<RenderResult>> render_meshes(Backend& backend, const Registry
     if (Status status = bake_map(backend, registry, map, maps, request.values, messages); !status)
       return tl::unexpected(status.error());
   }
-  Result<Job> job = make_render_job(registry, scene, meshes, maps, request, backend.info().shader_target);
+  RenderRequest suited = request;
+  suited.values = values_on(registry, backend.info(), std::move(suited.values));
+  Result<Job> job = make_render_job(registry, scene, meshes, maps, suited, backend.info().shader_target);
   if (!job) return tl::unexpected(job.error());
   Result<JobResult> result = backend.execute(*job);
   if (!result) return tl::unexpected(result.error());

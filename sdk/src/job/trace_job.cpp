@@ -311,7 +311,9 @@ Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registr
         return tl::unexpected(status.error());
     }
   }
-  Result<Job> job = make_trace_job(registry, maps, rays, requests, backend.info().shader_target, repeats);
+  std::vector<TraceRequest> suited(requests.begin(), requests.end());
+  for (TraceRequest& request : suited) request.values = values_on(registry, backend.info(), std::move(request.values));
+  Result<Job> job = make_trace_job(registry, maps, rays, suited, backend.info().shader_target, repeats);
   if (!job) return tl::unexpected(job.error());
   Result<JobResult> result = backend.execute(*job);
   if (!result) return tl::unexpected(result.error());

@@ -53,7 +53,7 @@ struct CacheCounts {
   std::uint64_t failed_stores = 0;
 };
 
-/// Safe for any number of threads and processes on one folder. A payload is stored whole or not at all: whatever
+/// Safe for any number of threads, and of processes on one folder. A payload is stored whole or not at all: whatever
 /// happens to a process or a file, `load` answers with the very bytes that were stored under the key, or with nothing.
 class Cache {
  public:
@@ -70,6 +70,10 @@ class Cache {
 /// is logged once and not asked again. Errors: "cache.folder" when the folder cannot be made or written,
 /// "cache.remote" for an address that is none, "cache.size".
 Result<std::unique_ptr<Cache>> open_cache(const CacheOptions& options);
+
+/// A cache that is gone with the process. Beyond `max_bytes` of payloads the entries used longest ago go; one that is
+/// larger than that is not kept.
+std::unique_ptr<Cache> make_memory_cache(std::uint64_t max_bytes);
 
 /// What lies in a cache folder.
 struct CacheContents {

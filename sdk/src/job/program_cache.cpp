@@ -14,7 +14,7 @@ namespace relievo {
 namespace {
 
 std::mutex guard;
-std::shared_ptr<Cache> programs;
+std::shared_ptr<Cache> programs = make_memory_cache(std::uint64_t{32} << 20);
 
 std::shared_ptr<Cache> current() {
   const std::lock_guard lock(guard);

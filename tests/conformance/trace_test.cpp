@@ -168,6 +168,19 @@ TEST(Trace, ARayAboveTheLidEntersThere) {
   EXPECT_EQ(trace_one(map, {0.25, 0.25, 3, 0.125, 0, -1, 1.5}).status, HitStatus::miss) << "ends above the lid";
 }
 
+TEST(Trace, ARayFromFarAboveEntersTheLidWhereItDoes) {
+  // With t in one float it would enter on a plateau that it passes by.
+  const HeightMap map = with_address(plateau_map(31, 44), AddressMode::mirror);
+  const Ray ray = {-51.13052099943161, 39.561673998832703, 43.9619484, 0.788251221, -0.615352452, -0.0115631092};
+  const Hit truth = Oracle(map).trace(ray);
+  for (const char* technique : {"exact", "quadrant_maxima", "robust_cone", "directional_cone"}) {
+    const Hit hit = trace_one(map, ray, request_of(technique));
+    EXPECT_EQ(hit.status, HitStatus::hit) << technique;
+    EXPECT_NEAR(hit.t, truth.t, 0.01) << technique;
+    EXPECT_NEAR(hit.h, truth.h, 1e-5) << technique;
+  }
+}
+
 TEST(Trace, APlateauAtTheLidIsTouched) {
   const HeightMap map = constant_map(8, 8, 1);
   for (const double height : {1.0, 1.7}) {

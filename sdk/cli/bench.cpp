@@ -126,11 +126,13 @@ Status run_bench(const Context& context, const BenchOptions& options) {
   Result<std::vector<TraceResult>> timed = trace(**backend, *registry, maps, rays, *timing, options.repeat);
   if (!timed) return tl::unexpected(timed.error());
   std::vector<Hit> truth = Oracle(*height).trace(rays);
+  const ValueTexts own = own_values(*registry, (*backend)->info());
   nlohmann::json rows = nlohmann::json::array();
   double reference = median(timed->front().seconds);
   for (std::size_t k = 0; k < timing->size(); ++k) {
     ErrorFigures figures = compare_hits(truth, (*counted)[k].hits, height->width, height->height);
     rows.push_back(row_of((*timing)[k], (*timed)[k], figures, reference));
+    rows.back()["own_values"] = own;
     rows.back()["map_bytes"] = map_bytes(*registry, (*timing)[k].technique, maps);
   }
   if (options.embree) {
@@ -142,8 +144,7 @@ Status run_bench(const Context& context, const BenchOptions& options) {
     fmt::print("{}\n", rows.dump(2));
   } else {
     print_table(rows);
-    const std::string own = own_values_text(*registry, (*backend)->info());
-    if (!own.empty()) fmt::print("{}: {}, unless --set says otherwise\n", (*backend)->info().device, own);
+    if (!own.empty()) fmt::print("{}: {}, unless --set says otherwise\n", (*backend)->info().device, to_text(own));
   }
   return {};
 }

@@ -122,11 +122,16 @@ Result<Settings> parse_settings(const Registry& registry, const std::vector<std:
   return settings;
 }
 
-std::string own_values_text(const Registry& registry, const BackendInfo& backend) {
+ValueTexts own_values(const Registry& registry, const BackendInfo& backend) {
   const std::map<std::string, const Parameter*> known = known_parameters(registry);
+  ValueTexts texts;
+  for (const auto& [name, value] : values_on(registry, backend, {})) texts[name] = value_text(*known.at(name), value);
+  return texts;
+}
+
+std::string to_text(const ValueTexts& values) {
   std::vector<std::string> texts;
-  for (const auto& [name, value] : values_on(registry, backend, {}))
-    texts.push_back(fmt::format("{}={}", name, value_text(*known.at(name), value)));
+  for (const auto& [name, value] : values) texts.push_back(fmt::format("{}={}", name, value));
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 

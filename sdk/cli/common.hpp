@@ -43,8 +43,15 @@ struct Settings {
 /// Errors: "cli.set" with the nearest known name.
 Result<Settings> parse_settings(const Registry& registry, const std::vector<std::string>& given,
                                 const std::string& only);
-/// What requests on the backend have that leave the axes open (values_on): "ray.storage=image, …".
-std::string own_values_text(const Registry& registry, const BackendInfo& backend);
+
+/// Parameters by name, with their values as --set takes them.
+using ValueTexts = std::map<std::string, std::string>;
+
+/// What requests on the backend have that leave the axes open (values_on).
+ValueTexts own_values(const Registry& registry, const BackendInfo& backend);
+
+/// "ray.storage=image, …"
+std::string to_text(const ValueTexts& values);
 
 /// Parses and opens a backend; with `oracle` allowed the pointer is null.
 Result<std::unique_ptr<Backend>> open(const std::string& name, bool validation);

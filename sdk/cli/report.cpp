@@ -151,7 +151,7 @@ void print_techniques(const Report& report) {
   const std::vector<RayRow>& rows = report.evaluation.rays;
   if (rows.empty()) return;
   const std::string& map = rows.front().case_name;
-  const std::string& backend = report.evaluation.backends.front().name;
+  const std::string& backend = report.evaluation.backends.front().info.name;
   auto find = [&](const std::string& technique, double angle) {
     return std::find_if(rows.begin(), rows.end(), [&](const RayRow& r) {
       return r.case_name == map && r.backend == backend && r.filter == "exact" && r.technique == technique &&

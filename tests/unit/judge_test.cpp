@@ -18,7 +18,7 @@ struct Case {
     BackendInfo vulkan, opengl;
     vulkan.name = "vulkan";
     opengl.name = "opengl";
-    evaluation.backends = {opengl, vulkan};
+    evaluation.backends = {{opengl, {}}, {vulkan, {}}};
     evaluation.rays.emplace_back();
     evaluation.ray_agreements.push_back({"map", "relief", 20, 1000000, 100});
     evaluation.pictures.push_back({"ball", "prism", "relief", "vulkan", "", "", "", 0, true, 0});

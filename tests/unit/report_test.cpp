@@ -266,7 +266,7 @@ Evaluation pictures_of_two_backends() {
   for (const char* name : {"opengl", "vulkan"}) {
     BackendInfo backend;
     backend.name = name;
-    evaluation.backends.push_back(backend);
+    evaluation.backends.push_back({backend, {}});
   }
   PixelOffsets offsets;
   offsets.judged = 1000;

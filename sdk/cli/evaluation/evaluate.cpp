@@ -36,11 +36,11 @@ Result<OpenBackends> open_backends(const std::vector<std::string>& names, std::v
 
 Result<Evaluation> evaluate(const EvaluationInput& input) {
   Evaluation evaluation;
-  Result<OpenBackends> opened = open_backends(input.backends, evaluation.backends, evaluation.not_run);
+  std::vector<BackendInfo> infos;
+  Result<OpenBackends> opened = open_backends(input.backends, infos, evaluation.not_run);
   if (!opened) return tl::unexpected(opened.error());
   OpenBackends& backends = *opened;
-  for (const BackendInfo& info : evaluation.backends)
-    evaluation.own_values.push_back(own_values_text(*input.registry, info));
+  for (const BackendInfo& info : infos) evaluation.backends.push_back({info, own_values(*input.registry, info)});
   Progress progress("evaluate", steps_of(input, backends.size()));
   input.clock->end("starting");
   const std::pair<const char*, decltype(&evaluate_rays)> parts[] = {

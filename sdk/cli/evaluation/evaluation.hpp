@@ -122,9 +122,13 @@ struct NotRun {
   std::string what, reason;
 };
 
+struct EvaluatedBackend {
+  BackendInfo info;
+  ValueTexts own_values;
+};
+
 struct Evaluation {
-  std::vector<BackendInfo> backends;
-  std::vector<std::string> own_values;  ///< of each backend: own_values_text
+  std::vector<EvaluatedBackend> backends;
   std::vector<RayRow> rays;
   std::vector<RayAgreement> ray_agreements;
   std::vector<PictureRow> pictures;
@@ -133,6 +137,9 @@ struct Evaluation {
   std::vector<std::string> messages;  ///< of the validation layer and the debug output
   std::vector<Check> checks;
   std::vector<NotRun> not_run;
+
+  /// Whether a row's reference or backend is one of them, and not the oracle or another stage.
+  bool has_backend(std::string_view name) const;
 };
 
 /// Runs everything. A backend that cannot be opened, or a stage that it cannot run, becomes a NotRun; an error of ours

@@ -6,17 +6,16 @@
 
 namespace relievo::cli {
 
+bool Evaluation::has_backend(std::string_view name) const {
+  return std::any_of(backends.begin(), backends.end(), [&](const EvaluatedBackend& b) { return b.info.name == name; });
+}
+
 namespace {
 
 constexpr double rays_equal_percent = 99.99;    // of non-ambiguous rays, between two backends
 constexpr double pixels_within_percent = 99.9;  // of pixels, within 1/255, between two backends
 constexpr double silhouette_iou = 0.99;         // prisms against the finely displaced mesh
 constexpr double offset_pixels = 0.1;           // p99 of a technique that always finds the first hit
-
-bool is_backend(const Evaluation& evaluation, const std::string& name) {
-  return std::any_of(evaluation.backends.begin(), evaluation.backends.end(),
-                     [&](const BackendInfo& b) { return b.name == name; });
-}
 
 /// What every row's figure is to keep.
 struct Bound {
@@ -77,7 +76,7 @@ void judge(const EvaluationInput& input, Evaluation& evaluation) {
       evaluation.picture_agreements, "pixels within 1/255 between backends", {Bound::least, pixels_within_percent},
       " %",
       [&](const PictureAgreement& p) {
-        return Judged{is_backend(evaluation, p.right), p.difference.within_percent,
+        return Judged{evaluation.has_backend(p.right), p.difference.within_percent,
                       fmt::format("{} {} of {}", p.stage, p.technique, p.scene)};
       },
       checks);

@@ -39,14 +39,14 @@ nlohmann::json to_json(const Evaluation& e) {
   using json = nlohmann::json;
   json result;
   result["schema"] = 1;
-  result["backends"] = list(e.backends, [](const BackendInfo& b) {
-    return json{{"name", b.name},
-                {"title", b.title},
-                {"device", b.device},
-                {"driver", b.driver},
-                {"api_version", b.api_version}};
+  result["backends"] = list(e.backends, [](const EvaluatedBackend& b) {
+    return json{{"name", b.info.name},
+                {"title", b.info.title},
+                {"device", b.info.device},
+                {"driver", b.info.driver},
+                {"api_version", b.info.api_version},
+                {"own_values", b.own_values}};
   });
-  result["own_values"] = e.own_values;
   result["rays"] = list(e.rays, [](const RayRow& r) {
     json row = to_json(r.error);
     row.update({{"case", r.case_name},

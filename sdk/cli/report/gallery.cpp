@@ -46,10 +46,9 @@ std::vector<std::string> scenes_of(const Evaluation& evaluation) {
 
 const PictureAgreement* agreement(const Evaluation& evaluation, const PictureRow& p, bool with_backend) {
   for (const PictureAgreement& a : evaluation.picture_agreements) {
-    bool is_backend = std::any_of(evaluation.backends.begin(), evaluation.backends.end(),
-                                  [&](const BackendInfo& b) { return b.name == a.right; });
     bool same = a.scene == p.scene && a.stage == p.stage && a.technique == p.technique;
-    if (same && is_backend == with_backend && (a.left == p.backend || (with_backend && a.right == p.backend)))
+    if (same && evaluation.has_backend(a.right) == with_backend &&
+        (a.left == p.backend || (with_backend && a.right == p.backend)))
       return &a;
   }
   return nullptr;

@@ -80,9 +80,9 @@ std::string checks_section(const Report& report) {
 std::string machines_section(const Report& report) {
   const Evaluation& e = report.evaluation;
   std::vector<std::vector<Cell>> rows;
-  for (std::size_t i = 0; i < e.backends.size(); ++i) {
-    const BackendInfo& b = e.backends[i];
-    rows.push_back({{b.name, "name"}, {b.title}, {b.device}, {b.driver}, {b.api_version}, {e.own_values[i]}});
+  for (const auto& [info, own] : e.backends) {
+    rows.push_back(
+        {{info.name, "name"}, {info.title}, {info.device}, {info.driver}, {info.api_version}, {to_text(own)}});
   }
   std::string html =
       "<section><h2>What ran where</h2>\n" +

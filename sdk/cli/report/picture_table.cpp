@@ -11,11 +11,6 @@ namespace relievo::cli {
 
 namespace {
 
-bool is_backend(const Evaluation& evaluation, const std::string& name) {
-  return std::any_of(evaluation.backends.begin(), evaluation.backends.end(),
-                     [&](const BackendInfo& b) { return b.name == name; });
-}
-
 bool same_picture(const PictureAgreement& a, const PictureAgreement& b) {
   return a.scene == b.scene && a.stage == b.stage && a.technique == b.technique;
 }
@@ -25,7 +20,7 @@ bool repeats_another(const Evaluation& evaluation, const PictureAgreement& row) 
   return std::any_of(evaluation.picture_agreements.begin(), evaluation.picture_agreements.end(),
                      [&](const PictureAgreement& a) {
                        constexpr double same_percent = 99.9;
-                       return same_picture(a, row) && a.right == row.left && is_backend(evaluation, a.left) &&
+                       return same_picture(a, row) && a.right == row.left && evaluation.has_backend(a.left) &&
                               a.difference.within_percent >= same_percent;
                      });
 }

@@ -76,12 +76,13 @@ Result<std::vector<Ray>> read_rays(const std::string& path) {
   return parse_rays(file, path);
 }
 
-std::string format_hits(const std::vector<Hit>& hits, int digits) {
+std::string format_hits(const std::vector<Hit>& hits, HitDigits digits) {
   fmt::memory_buffer text;
   fmt::format_to(std::back_inserter(text), "status,t,u,v,h,steps,fetches\n");
   for (const Hit& hit : hits) {
     fmt::format_to(std::back_inserter(text), "{},{:.{}g},{:.{}g},{:.{}g},{:.{}g},{},{}\n", to_string(hit.status), hit.t,
-                   digits, hit.u, digits, hit.v, digits, hit.h, digits, hit.steps, hit.fetches);
+                   digits.distance, hit.u, digits.place, hit.v, digits.place, hit.h, digits.distance, hit.steps,
+                   hit.fetches);
   }
   return fmt::to_string(text);
 }

@@ -12,7 +12,14 @@ namespace relievo::cli {
 /// An empty t_max means no limit. Values may be inf or nan: such rays miss.
 Result<std::vector<Ray>> read_rays(const std::string& path);
 
-/// `status,t,u,v,h,steps,fetches`, one row a ray; `digits` significant: 9 for float results, 17 for double.
-std::string format_hits(const std::vector<Hit>& hits, int digits);
+/// Significant digits by which numbers can be read back as they were: 9 for a float, 17 for a double.
+struct HitDigits {
+  int distance;  ///< t and h
+  int place;     ///< u and v: of a backend a float within its tile
+};
+inline constexpr HitDigits backend_digits = {9, 17}, oracle_digits = {17, 17};
+
+/// `status,t,u,v,h,steps,fetches`, one row a ray.
+std::string format_hits(const std::vector<Hit>& hits, HitDigits digits);
 
 }  // namespace relievo::cli

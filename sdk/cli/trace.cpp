@@ -59,8 +59,8 @@ Status run_trace(const Context& context, const TraceOptions& options) {
   if (!rays) return tl::unexpected(rays.error());
   Result<std::vector<Hit>> hits = trace_on(context, options, *height, *rays);
   if (!hits) return tl::unexpected(hits.error());
-  if (Status status = write_text(options.output, format_hits(*hits, options.backend == "oracle" ? 17 : 9)); !status)
-    return status;
+  const HitDigits digits = options.backend == "oracle" ? oracle_digits : backend_digits;
+  if (Status status = write_text(options.output, format_hits(*hits, digits)); !status) return status;
   if (options.output == "-") return {};
   if (context.json) {
     fmt::print("{}\n",

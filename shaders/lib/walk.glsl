@@ -170,18 +170,34 @@ float relievo_walk_solve(Walk walk, WalkPlace place, vec4 corners, float reach) 
   return share <= 1.0 ? share * reach : RELIEVO_WALK_NEVER;
 }
 
-// The hit at s. Its place comes from the cell, since far out a float t tells places apart worse than the walk.
-Hit relievo_walk_hit(Ray ray, Walk walk, vec2 s) {
-  Hit hit = relievo_hit_at(ray, RELIEVO_HIT, relievo_walk_t(walk, s));
-  WalkPlace place = relievo_walk_place(walk, s);
-  precise vec2 rough = hit.point.xy * walk.extent;
-  precise vec2 off = (place.cell + 0.5 - rough) + place.fraction;
+// (u, v) at t, where the walk has come to `place`: far out a float t tells places apart worse than the walk.
+vec2 relievo_walk_uv(Ray ray, Walk walk, WalkPlace place, float t) {
+#if RELIEVO_HITS_WITHIN_TILE
+  vec2 cell = place.cell - walk.extent * relievo_fold_periods(place.cell, walk.extent);
+  precise vec2 uv = (cell + 0.5 + place.fraction) / walk.extent;
+#else
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
   vec2 period = walk.extent;
 #else
   vec2 period = 2.0 * walk.extent;  // of mirror; for clamp and clip it is more than what is off
 #endif
-  precise vec2 uv = hit.point.xy + (off - period * floor(off / period + 0.5)) / walk.extent;
-  hit.point = vec3(uv, place.height);
-  return hit;
+  vec2 near = relievo_point(ray, t).xy;
+  precise vec2 rough = near * walk.extent;
+  precise vec2 off = (place.cell + 0.5 - rough) + place.fraction;
+  precise vec2 uv = near + (off - period * floor(off / period + 0.5)) / walk.extent;
+#endif
+  return uv;
+}
+
+// Where a falling ray meets the base, or where the walk starts if that lies below.
+Hit relievo_walk_base_hit(Ray ray, Walk walk, float t) {
+  precise float s = max(walk.base_height / -walk.rise, 0.0);
+  WalkPlace place = relievo_walk_place(walk, relievo_walk_on(vec2(0.0), s));
+  return Hit(RELIEVO_HIT, t, vec3(relievo_walk_uv(ray, walk, place, t), min(walk.base_height, 0.0)));
+}
+
+Hit relievo_walk_hit(Ray ray, Walk walk, vec2 s) {
+  WalkPlace place = relievo_walk_place(walk, s);
+  float t = relievo_walk_t(walk, s);
+  return Hit(RELIEVO_HIT, t, vec3(relievo_walk_uv(ray, walk, place, t), place.height));
 }

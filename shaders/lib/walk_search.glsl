@@ -59,6 +59,7 @@ bool relievo_search_begin(Ray ray, ivec2 extent, out Interval interval, out Walk
 Hit relievo_search_result(Ray ray, Interval interval, Walk walk, WalkSearch search) {
   if (search.starts_inside) return relievo_hit_at(ray, RELIEVO_INSIDE, 0.0);
   if (search.hit < RELIEVO_WALK_NEVER) return relievo_walk_hit(ray, walk, relievo_walk_on(search.s, search.hit));
+  if (search.ends && interval.end_status == RELIEVO_HIT) return relievo_walk_base_hit(ray, walk, interval.exit);
   if (search.ends) return relievo_end_of(ray, interval);
   return relievo_hit_at(ray, RELIEVO_EXHAUSTED, clamp(relievo_walk_t(walk, search.s), interval.enter, interval.exit));
 }

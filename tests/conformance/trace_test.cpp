@@ -181,6 +181,26 @@ TEST(Trace, ARayFromFarAboveEntersTheLidWhereItDoes) {
   }
 }
 
+TEST(Trace, AHitThousandsOfTilesAwayKeepsItsPlace) {
+  // A float (u, v) of 2000 tiles is a hundredth of a texel of this map, or two, off.
+  std::vector<Ray> rays;
+  for (int i = 0; i < 32; ++i) {
+    const float turn = 0.2f * static_cast<float>(i);
+    rays.push_back({0.3, 0.6, 20.0 + i, std::cos(turn), std::sin(turn), -0.0174532924});
+  }
+  for (const AddressMode mode : {AddressMode::repeat, AddressMode::mirror, AddressMode::clamp}) {
+    const HeightMap map = with_address(plateau_map(31, 44), mode);
+    const std::vector<Hit> truth = Oracle(map).trace(rays);
+    for (const std::string& name : both_backends) {
+      for (const char* technique : {"exact", "quadrant_maxima", "robust_cone", "directional_cone"}) {
+        const ErrorFigures figures = compare_hits(truth, trace_on(name, map, rays, request_of(technique)), 31, 44);
+        EXPECT_EQ(figures.missed + figures.false_hit + figures.wrong_layer, 0u) << technique << " on " << name;
+        EXPECT_LT(figures.uv_texels.max, 5e-4) << technique << " on " << name << ", " << to_string(mode);
+      }
+    }
+  }
+}
+
 TEST(Trace, APlateauAtTheLidIsTouched) {
   const HeightMap map = constant_map(8, 8, 1);
   for (const double height : {1.0, 1.7}) {

@@ -137,6 +137,13 @@ INSTANTIATE_TEST_SUITE_P(Faults, ParseMapRejects, testing::ValuesIn(map_faults),
 
 class ParseStageRejects : public testing::TestWithParam<Fault> {};
 
+TEST(ParseStage, HitsAreContinuousUnlessTheyMayLackTiles) {
+  EXPECT_FALSE(parse_stage(examples::stage, stage_path)->hits_within_tile);
+  const auto within = parse_stage(with(examples::stage, "mesh =", "hits = \"within_tile\"\nmesh ="), stage_path);
+  ASSERT_TRUE(within) << format(within.error());
+  EXPECT_TRUE(within->hits_within_tile);
+}
+
 TEST_P(ParseStageRejects, WithItsPlace) {
   const Fault& fault = GetParam();
   const auto stage = parse_stage(with(examples::stage, fault.from, fault.to), stage_path);
@@ -148,6 +155,8 @@ TEST_P(ParseStageRejects, WithItsPlace) {
 const Fault stage_faults[] = {
     {"UnknownKey", "fallback =", "fall_back =", "describe.unknown-key", 6, 1, R"(the nearest is "fallback")"},
     {"UnknownMesh", "\"base\"", "\"bases\"", "describe.range", 7, 8, R"(the nearest is "base")"},
+    {"UnknownHits", "mesh = \"base\"", "hits = \"within_tiles\"", "describe.range", 7, 8,
+     R"(the nearest is "within_tile")"},
     {"GraphicsWithoutMesh", "\"base\"", "\"none\"", "describe.range", 7, 8, "a mesh is expected"},
     {"UnknownShaderStage", "\"geometry\"", "\"geometri\"", "describe.range", 14, 9, R"(the nearest is "geometry")"},
     {"UnknownShaderKey", "module = \"prism.geom", "modul = \"prism.geom", "describe.unknown-key", 15, 1, "\"module\""},

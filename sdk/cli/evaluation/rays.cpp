@@ -90,8 +90,7 @@ Result<Answers> ask(const RayRun& run, Backend& backend, std::vector<std::string
   if (!counted) return tl::unexpected(counted.error());
   Answers answers;
   for (std::size_t i = 0; i < counted->read_backs.size(); ++i) {
-    answers.hits.push_back(
-        read_hits(counted->read_backs[i], run.rays[i / run.requests()], run.ray_case.height.address));
+    answers.hits.push_back(read_hits(counted->read_backs[i], run.rays[i / run.requests()]));
     counted->read_backs[i] = {};
   }
   if (!run.input.time) return answers;

@@ -108,7 +108,7 @@ Status count_some(MapRun& run, Backend& backend, std::size_t first, std::size_t 
   for (std::size_t s = 0; s < run.rays.size(); ++s) {
     for (std::size_t k = first; k < last; ++k) {
       std::vector<std::byte>& bytes = result->read_backs[s * requests.size() + k - first];
-      std::vector<Hit> hits = read_hits(bytes, run.rays[s], height.address);
+      std::vector<Hit> hits = read_hits(bytes, run.rays[s]);
       bytes = {};
       SweepRow& row = rows[s * run.settings.size() + k];
       row.error = compare_hits(run.truth[s], hits, height.width, height.height);

@@ -151,8 +151,9 @@ struct StageDescriptor {
   std::vector<std::string> maps;     ///< maps the stage itself reads, e.g. "normal" for shading
   std::vector<Parameter> parameters;
   FeatureSet features;
-  std::string fallback;  ///< the stage to use where a feature is missing; may be empty
-  std::string mesh;      ///< what geometry it draws: "none" (compute), "base", "tessellated", "prisms"
+  std::string fallback;           ///< the stage to use where a feature is missing; may be empty
+  std::string mesh;               ///< what geometry it draws: "none" (compute), "base", "tessellated", "prisms"
+  bool hits_within_tile = false;  ///< u and v of hits may lack whole tiles, and are the more exact far from 0
   std::string file;
 };
 

@@ -51,7 +51,7 @@ Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::sp
                            bool read_hits);
 
 /// The hits in one read-back of such a job; u and v in the rays' own tiles.
-std::vector<Hit> read_hits(const std::vector<std::byte>& read_back, std::span<const Ray> rays, AddressMode address);
+std::vector<Hit> read_hits(const std::vector<std::byte>& read_back, std::span<const Ray> rays);
 
 struct TraceResult {
   std::vector<Hit> hits;        ///< one a ray; u and v in the rays' own tiles
@@ -60,7 +60,7 @@ struct TraceResult {
 
 /// Reads the hits of request k back from a result of make_trace_job.
 std::vector<TraceResult> read_trace(const Job& job, const JobResult& result, std::span<const Ray> rays,
-                                    AddressMode address, std::size_t requests);
+                                    std::size_t requests);
 
 /// Bakes what is missing in `maps`, makes the job and runs it. `messages` receives validation and debug output.
 Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registry, MapSet& maps,

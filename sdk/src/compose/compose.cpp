@@ -127,6 +127,7 @@ Result<ComposedProgram> compose_parts(const Registry& registry, const Permutatio
   for (const MapDescriptor* map : parts.maps) program.maps.push_back({map->name, map->sampler, map->set, map->binding});
   bool count = permutation.count_cost || permutation.aov == Aov::steps;
   std::string macros = axis_macros(permutation.filter, permutation.address, count, permutation.aov);
+  macros += fmt::format("#define RELIEVO_HITS_WITHIN_TILE {}\n", parts.stage->hits_within_tile ? 1 : 0);
   for (const StageShader& shader : parts.stage->shaders) {
     Result<ComposedShader> composed = compose_shader(registry, parts, shader, macros, slots);
     if (!composed) return tl::unexpected(composed.error());

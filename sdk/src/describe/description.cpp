@@ -68,7 +68,12 @@ nlohmann::json description_of(const StageDescriptor& s) {
   nlohmann::json shaders = nlohmann::json::array();
   for (const StageShader& shader : s.shaders)
     shaders.push_back({{"stage", to_string(shader.stage)}, {"module", shader.module}});
-  json.update({{"roles", s.roles}, {"maps", s.maps}, {"mesh", s.mesh}, {"fallback", s.fallback}, {"shaders", shaders}});
+  json.update({{"roles", s.roles},
+               {"maps", s.maps},
+               {"mesh", s.mesh},
+               {"hits_within_tile", s.hits_within_tile},
+               {"fallback", s.fallback},
+               {"shaders", shaders}});
   return json;
 }
 

@@ -9,6 +9,7 @@ namespace relievo {
 namespace {
 
 constexpr std::array<std::string_view, 4> mesh_names = {"none", "base", "tessellated", "prisms"};
+constexpr std::array<std::string_view, 2> hits_names = {"continuous", "within_tile"};
 
 /// In pipeline order, which is the order of ShaderStage.
 const std::array<std::string_view, 6>& shader_stage_names() {
@@ -88,7 +89,7 @@ void read_mesh(TomlReader& reader, StageDescriptor& stage) {
 
 void read_stage(TomlReader& reader, StageDescriptor& stage) {
   reader.allow_keys({"schema", "name", "title", "source", "summary", "roles", "maps", "features", "fallback", "mesh",
-                     "shader", "loops", "parameters", "axes"});
+                     "hits", "shader", "loops", "parameters", "axes"});
   stage.roles = reader.names("roles");
   stage.maps = reader.names("maps");
   stage.features = read_features(reader);
@@ -96,6 +97,7 @@ void read_stage(TomlReader& reader, StageDescriptor& stage) {
   read_shaders(reader, stage);
   check_pipeline(reader, stage);
   read_mesh(reader, stage);
+  stage.hits_within_tile = reader.choice("hits", hits_names, 0) == 1;
   imply_features(stage);
 }
 

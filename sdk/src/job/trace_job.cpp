@@ -93,12 +93,19 @@ struct PackedHit {
   float number(HitWord which) const { return std::bit_cast<float>(word(which)); }
 };
 
-Hit unpack(const PackedHit& packed, const Ray& ray, AddressMode address) {
+/// A hit's coordinate may lack whole tiles, since in a float it is the more exact the nearer it is to 0: they are those
+/// that bring it nearest to the ray.
+double with_tiles(float coordinate, double on_ray) {
+  const double tiles = std::round(on_ray - coordinate);
+  return std::isfinite(tiles) ? coordinate + tiles : coordinate;
+}
+
+Hit unpack(const PackedHit& packed, const Ray& ray) {
   Hit hit;
   hit.status = static_cast<HitStatus>(packed.word(status_word));
   hit.t = packed.number(t_word);
-  hit.u = packed.number(u_word) + tile_of(ray.u, address);
-  hit.v = packed.number(v_word) + tile_of(ray.v, address);
+  hit.u = with_tiles(packed.number(u_word), ray.u + hit.t * ray.du);
+  hit.v = with_tiles(packed.number(v_word), ray.v + hit.t * ray.dv);
   hit.h = packed.number(h_word);
   hit.steps = packed.word(steps_word);
   hit.fetches = packed.word(fetches_word);
@@ -280,19 +287,19 @@ Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::sp
   return make_trace_job(registry, maps, {&set, 1}, requests, shader_target, repeats, true);
 }
 
-std::vector<Hit> read_hits(const std::vector<std::byte>& read_back, std::span<const Ray> rays, AddressMode address) {
+std::vector<Hit> read_hits(const std::vector<std::byte>& read_back, std::span<const Ray> rays) {
   std::vector<Hit> hits;
   hits.reserve(rays.size());
   const std::size_t stride = grid_of(rays.size()).size();
-  for (std::size_t i = 0; i < rays.size(); ++i) hits.push_back(unpack({read_back, stride, i}, rays[i], address));
+  for (std::size_t i = 0; i < rays.size(); ++i) hits.push_back(unpack({read_back, stride, i}, rays[i]));
   return hits;
 }
 
 std::vector<TraceResult> read_trace(const Job& job, const JobResult& result, std::span<const Ray> rays,
-                                    AddressMode address, std::size_t requests) {
+                                    std::size_t requests) {
   std::vector<TraceResult> traces(requests);
   for (std::size_t k = 0; k < requests; ++k) {
-    traces[k].hits = read_hits(result.read_backs.at(k), rays, address);
+    traces[k].hits = read_hits(result.read_backs.at(k), rays);
     for (std::size_t c = k; c < job.commands.size() && c < result.command_seconds.size(); c += requests) {
       traces[k].seconds.push_back(result.command_seconds[c]);
     }
@@ -318,7 +325,7 @@ Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registr
   Result<JobResult> result = backend.execute(*job);
   if (!result) return tl::unexpected(result.error());
   append_messages(*result, messages);
-  return read_trace(*job, *result, rays, maps.at("height").address, requests.size());
+  return read_trace(*job, *result, rays, requests.size());
 }
 
 namespace {

@@ -1,5 +1,6 @@
 // Host of a map's bake module: runs relievo_bake once for every texel of the map (of every layer, if it has several).
-// A module defines `void relievo_bake(ivec2 texel)`, reads its input maps and writes with relievo_bake_write.
+// A module defines `void relievo_bake(ivec2 texel)`, reads its input maps and writes with relievo_bake_write. Each phase of its
+// passes is a program of its own: drivers compile conditions on a uniform anew for every value that it has.
 #include "ray.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -20,7 +20,7 @@ struct Bake {
 /// Eight layers of three floats a texel; with repeat they are apart.
 Bake sectors(int extent) {
   Bake bake;
-  bake.map.passes = 30;
+  bake.map.passes = {1, 27, 1, 1};
   bake.map.layers_apart = {"repeat"};
   bake.output = {"sectors", extent, extent, 3, {}};
   bake.output.depth = 8;
@@ -59,7 +59,7 @@ TEST(BakePlan, LayersThatReadOneAnotherStayTogetherInSeveralBuffers) {
 
 TEST(BakePlan, OnePassReadsNoOtherLayer) {
   Bake bake = sectors(2048);
-  bake.map.passes = 1;
+  bake.map.passes = {1};
   bake.output.address = AddressMode::mirror;
   EXPECT_EQ(bake.plan()->layers, 1);
 }

@@ -32,6 +32,24 @@ TEST(ParseMap, ReadsWithWhichAddressModesLayersAreApart) {
   EXPECT_EQ(map->layers_apart, (std::vector<std::string>{"clip", "repeat"}));
 }
 
+TEST(ParseMap, ReadsThePassesOfEveryPhase) {
+  const auto with_passes = [](const std::string& passes) {
+    return parse_map(with(examples::map, "channels = 3", "channels = 3\npasses = " + passes), map_path);
+  };
+  EXPECT_EQ(parse_map(examples::map, map_path)->passes, std::vector<int>{1});
+  EXPECT_EQ(with_passes("5")->passes, std::vector<int>{5});
+  EXPECT_EQ(with_passes("[1, 27, 1]")->passes, (std::vector<int>{1, 27, 1}));
+  const auto zero = with_passes("[1, 0]");
+  ASSERT_FALSE(zero);
+  EXPECT_EQ(zero.error().id, "describe.range");
+  EXPECT_NE(zero.error().message.find("is 0; an integer from 1 to 256"), std::string::npos) << format(zero.error());
+  for (const char* wrong : {"[]", "[1, \"two\"]", "1.5"}) {
+    const auto refused = with_passes(wrong);
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_EQ(refused.error().id, "describe.type") << format(refused.error());
+  }
+}
+
 TEST(ParseMap, ReadsTheFormatOfAnImage) {
   const std::string axis =
       "\n[axes.fetch]\ntitle = \"t\"\nvalues = [\"texture\", \"image\"]\ndefault = \"texture\"\nbinding = \"macro\"\n";

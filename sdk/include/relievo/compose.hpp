@@ -75,11 +75,16 @@ struct ComposedProgram {
 /// range, a rule of an axis that is broken, a missing or escaping or self-including file ("compose.*").
 Result<ComposedProgram> compose(const Registry& registry, const Permutation& permutation);
 
-/// Composes the compute program that bakes `map`; its parameters are keyed "map.parameter". It writes the texels to as
-/// many storage buffers, from set 0, binding 2 on: 1 to most_bake_buffers (lib/bake_buffers.glsl).
 constexpr int most_bake_buffers = 8;
+
+struct BakeProgram {
+  int phase = 0;    ///< of MapDescriptor::passes
+  int buffers = 1;  ///< storage buffers for the texels, from set 0, binding 2 on: 1 to most_bake_buffers
+};
+
+/// Composes a compute program that bakes `map`; its parameters are keyed "map.parameter" (lib/bake.glsl).
 Result<ComposedProgram> compose_bake(const Registry& registry, std::string_view map, AddressMode address,
-                                     const std::map<std::string, double>& values = {}, int buffers = 1);
+                                     const std::map<std::string, double>& values = {}, BakeProgram program = {});
 
 /// The Parameters block's bytes for the program's current values.
 std::vector<std::byte> parameter_block(const ComposedProgram& program);

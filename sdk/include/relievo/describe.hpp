@@ -119,7 +119,9 @@ struct MapDescriptor {
   MapDimension dimension = MapDimension::flat;
   int layers = 1;                ///< of an array, or texels along the third axis; or
   std::string layers_parameter;  ///< the int parameter that says how many; empty = `layers`
-  int passes = 1;  ///< times that the module runs over every level; later passes read what earlier ones wrote
+  /// Times that the module runs over every level, by phase; later passes read what earlier ones wrote. Each phase is a
+  /// program of its own, which knows its number (RELIEVO_BAKE_PHASE).
+  std::vector<int> passes = {1};
   /// Address modes with which the passes of a layer read no other layer; where there is one pass, all.
   std::vector<std::string> layers_apart;
   /// One a channel, for maps that have an int parameter `bits` (8, 16 or 32): 8 and 16 are stored as unorm. Empty:

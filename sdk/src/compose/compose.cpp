@@ -137,7 +137,7 @@ Result<ComposedProgram> compose_parts(const Registry& registry, const Permutatio
 }
 
 Result<ComposedProgram> compose_bake(const Registry& registry, std::string_view map_name, AddressMode address,
-                                     const std::map<std::string, double>& values, int buffers) {
+                                     const std::map<std::string, double>& values, BakeProgram bake) {
   Result<const MapDescriptor*> map = registry.map(map_name);
   if (!map) return tl::unexpected(map.error());
   if ((*map)->module.empty()) {
@@ -153,7 +153,7 @@ Result<ComposedProgram> compose_bake(const Registry& registry, std::string_view 
   if (!slots) return tl::unexpected(slots.error());
 
   ComposedProgram program;
-  program.key = fmt::format("bake={}/{}", map_name, to_string(address));
+  program.key = fmt::format("bake={}/{}/{}", map_name, bake.phase, to_string(address));
   program.stage = "bake";
   program.parameters = *slots;
   program.parameter_block_size = parameter_block_size(*slots);
@@ -162,8 +162,10 @@ Result<ComposedProgram> compose_bake(const Registry& registry, std::string_view 
     program.maps.push_back({input->name, input->sampler, input->set, input->binding});
 
   SourceExpander expander(registry.sources);
-  std::string text = axis_macros(HeightFilter::exact, address, false, Aov::color) +
-                     fmt::format("#define RELIEVO_BAKE_BUFFERS {}\n", buffers) + declare_parameters(*slots);
+  std::string text =
+      axis_macros(HeightFilter::exact, address, false, Aov::color) +
+      fmt::format("#define RELIEVO_BAKE_PHASE {}\n#define RELIEVO_BAKE_BUFFERS {}\n", bake.phase, bake.buffers) +
+      declare_parameters(*slots);
   Result<std::string> maps = declare_maps(inputs, expander);
   if (!maps) return tl::unexpected(maps.error());
   Result<std::string> module = expander.expand((*map)->module);

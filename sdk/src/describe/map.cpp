@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 4> rounding_names = {"nearest", "up", "do
 constexpr std::array<std::string_view, 2> texel_names = {"unorm", "uint"};
 constexpr std::array<std::string_view, 10> image_formats = {"r8",     "rg8",  "rgba8", "r16",     "rg16",
                                                             "rgba16", "r32f", "rg32f", "rgba32f", "rgba16ui"};
-constexpr int max_layers = 256;
+constexpr int max_layers = 256, max_passes = 256;
 
 bool is_glsl_identifier(std::string_view name) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -98,7 +98,7 @@ void read_map(TomlReader& reader, MapDescriptor& map) {
   map.levels = reader.choice_of<MapLevels>("levels", level_names, MapLevels::single);
   read_layers(reader, map);
   read_rounding(reader, map);
-  if (reader.has("passes")) map.passes = reader.integer("passes", 1, max_layers);
+  if (reader.has("passes")) map.passes = reader.integers("passes", 1, max_passes);
   map.layers_apart = reader.choices("layers_apart", {"repeat", "mirror", "clamp", "clip"}, "describe.range");
   map.is_uint = reader.choice("texels", texel_names, 0) == 1;
   map.sampler = read_sampler(reader);

@@ -220,20 +220,32 @@ double TomlReader::number(std::string_view key) {
   return 0;
 }
 
-int TomlReader::integer(std::string_view key, int minimum, int maximum) {
-  const TomlEntry* entry = require(key);
-  if (!entry) return minimum;
-  if (entry->value.kind != TomlValue::Kind::integer) {
-    report_type(*entry, entry->value, "an integer");
+int TomlReader::integer_of(const TomlEntry& entry, const TomlValue& value, int minimum, int maximum) {
+  if (value.kind != TomlValue::Kind::integer) {
+    report_type(entry, value, "an integer");
     return minimum;
   }
-  const std::int64_t value = entry->value.integer;
-  if (value >= minimum && value <= maximum) return static_cast<int>(value);
-  report("describe.range",
-         fmt::format("{} of the {} is {}; an integer from {} to {} is expected", quote(key), label_, value, minimum,
-                     maximum),
-         key);
+  if (value.integer >= minimum && value.integer <= maximum) return static_cast<int>(value.integer);
+  report_at("describe.range",
+            fmt::format("{} of the {} is {}; an integer from {} to {} is expected", quote(entry.key), label_,
+                        value.integer, minimum, maximum),
+            value);
   return minimum;
+}
+
+int TomlReader::integer(std::string_view key, int minimum, int maximum) {
+  const TomlEntry* entry = require(key);
+  return entry ? integer_of(*entry, entry->value, minimum, maximum) : minimum;
+}
+
+std::vector<int> TomlReader::integers(std::string_view key, int minimum, int maximum) {
+  const TomlEntry* entry = require(key);
+  if (!entry) return {};
+  if (entry->value.kind != TomlValue::Kind::array) return {integer_of(*entry, entry->value, minimum, maximum)};
+  if (entry->value.items.empty()) report_type(*entry, entry->value, "at least one integer");
+  std::vector<int> integers;
+  for (const TomlValue& item : entry->value.items) integers.push_back(integer_of(*entry, item, minimum, maximum));
+  return integers;
 }
 
 std::string TomlReader::path(std::string_view key) {

@@ -54,6 +54,7 @@ class TomlReader {
   std::vector<std::pair<std::string, std::vector<std::string>>> word_lists(std::string_view key);
   double number(std::string_view key);                          ///< required; integer or float, finite in 32 bits
   int integer(std::string_view key, int minimum, int maximum);  ///< required
+  std::vector<int> integers(std::string_view key, int minimum, int maximum);  ///< required; one, or several in an array
 
   /// A path relative to the file's folder that stays in it; returns it joined to that folder.
   std::string path(std::string_view key);
@@ -93,6 +94,7 @@ class TomlReader {
   std::vector<std::string> strings(std::string_view key, const std::function<Fault(const std::string&)>& fault_of);
   std::optional<std::string> string_of(const TomlEntry& entry);
   std::vector<std::string> words_of(const TomlEntry& entry);
+  int integer_of(const TomlEntry& entry, const TomlValue& value, int minimum, int maximum);
   void report_type(const TomlEntry& entry, const TomlValue& value, std::string_view expected);
   void report_at(std::string id, std::string message, const TomlValue& value);
 

@@ -63,22 +63,36 @@ void bind_texels(const BakePlan& plan, const BakeSlab& slab, Job& job, std::vect
   }
 }
 
+/// A program for each phase of a map's passes.
+using PhasePrograms = std::vector<PreparedProgram>;
+
+/// The phase of every pass.
+std::vector<int> phases_of(const MapDescriptor& descriptor) {
+  std::vector<int> phases;
+  for (std::size_t phase = 0; phase < descriptor.passes.size(); ++phase)
+    phases.insert(phases.end(), static_cast<std::size_t>(descriptor.passes[phase]), static_cast<int>(phase));
+  return phases;
+}
+
 /// One dispatch a level and pass: a command sees what earlier ones wrote.
-Job bake_job(const PreparedProgram& prepared, const MapDescriptor& descriptor, const MapSet& maps,
-             const MapData& output, const BakePlan& plan, const BakeSlab& slab) {
+Job bake_job(const PhasePrograms& programs, const MapDescriptor& descriptor, const MapSet& maps, const MapData& output,
+             const BakePlan& plan, const BakeSlab& slab) {
   Job job;
   job.name = "bake " + descriptor.name;
-  job.programs.push_back(prepared.program);
+  for (const PreparedProgram& prepared : programs) job.programs.push_back(prepared.program);
   std::vector<ResourceBinding> shared;
-  bind_maps(prepared.composed, maps, job, shared);
-  bind_parameters(prepared.composed, job, shared);
+  bind_maps(programs.front().composed, maps, job, shared);
+  bind_parameters(programs.front().composed, job, shared);
   bind_texels(plan, slab, job, shared);
-  for (int k = 0; k < output.levels * descriptor.passes; ++k) {
+  const std::vector<int> phases = phases_of(descriptor);
+  const int passes = static_cast<int>(phases.size());
+  for (int k = 0; k < output.levels * passes; ++k) {
     Dispatch dispatch;
+    dispatch.program = phases[static_cast<std::size_t>(k % passes)];
     dispatch.resources = shared;
-    BakeBlock block = bake_block(output, k / descriptor.passes, k % descriptor.passes, plan, slab);
+    BakeBlock block = bake_block(output, k / passes, k % passes, plan, slab);
     bind_buffer(0, bake_block_binding, make_buffer("Bake", &block, sizeof(block)), job, dispatch.resources);
-    keep_contract(prepared.program, dispatch.resources);
+    keep_contract(job.programs[static_cast<std::size_t>(dispatch.program)], dispatch.resources);
     auto groups = [](int extent) { return (static_cast<std::uint32_t>(extent) + bake_group - 1) / bake_group; };
     dispatch.groups = {groups(block.size[0]), groups(block.size[1]), static_cast<std::uint32_t>(slab.count)};
     job.commands.emplace_back(std::move(dispatch));
@@ -125,8 +139,8 @@ class BakedTexels {
   std::size_t added_ = 0;
 };
 
-Status bake_texels(Backend& backend, const PreparedProgram& prepared, const MapDescriptor& descriptor,
-                   const MapSet& maps, const MapData& output, const BakePlan& plan, BakedTexels& texels,
+Status bake_texels(Backend& backend, const PhasePrograms& programs, const MapDescriptor& descriptor, const MapSet& maps,
+                   const MapData& output, const BakePlan& plan, BakedTexels& texels,
                    std::vector<std::string>* messages) {
   for (int first = 0; first < output.depth; first += plan.layers) {
     const BakeSlab slab{first, std::min(plan.layers, output.depth - first)};
@@ -134,7 +148,7 @@ Status bake_texels(Backend& backend, const PreparedProgram& prepared, const MapD
     const auto add = [&](std::size_t, std::span<const std::byte> bytes) {
       if (added) added = texels.add(bytes);
     };
-    Result<JobResult> result = backend.execute_once(bake_job(prepared, descriptor, maps, output, plan, slab), add);
+    Result<JobResult> result = backend.execute_once(bake_job(programs, descriptor, maps, output, plan, slab), add);
     if (!result) return tl::unexpected(result.error());
     append_messages(*result, messages);
     if (!added) return added;
@@ -162,13 +176,17 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
   const int bits = std::exchange(output.bits, 32);
   const Result<BakePlan> plan = plan_bake(output, descriptor, height, backend.info());
   if (!plan) return tl::unexpected(plan.error());
-  const int buffers = static_cast<int>(plan->buffers(plan->layers));
-  if (buffers > 1) composed = compose_bake(registry, name, height.address, own, buffers);
-  if (!composed) return tl::unexpected(composed.error());
-  Result<PreparedProgram> prepared = prepare_composed(std::move(*composed), backend.info().shader_target);
-  if (!prepared) return tl::unexpected(prepared.error());
+  PhasePrograms programs;
+  for (int phase = 0; phase < static_cast<int>(descriptor.passes.size()); ++phase) {
+    const BakeProgram program = {phase, static_cast<int>(plan->buffers(plan->layers))};
+    composed = compose_bake(registry, name, height.address, own, program);
+    if (!composed) return tl::unexpected(composed.error());
+    Result<PreparedProgram> prepared = prepare_composed(std::move(*composed), backend.info().shader_target);
+    if (!prepared) return tl::unexpected(prepared.error());
+    programs.push_back(std::move(*prepared));
+  }
   BakedTexels texels(descriptor, bits, static_cast<std::size_t>(output.depth) * plan->layer_floats);
-  Status baked = bake_texels(backend, *prepared, descriptor, maps, output, *plan, texels, messages);
+  Status baked = bake_texels(backend, programs, descriptor, maps, output, *plan, texels, messages);
   if (!baked) return baked;
   if (Status status = texels.move_to(output); !status) return status;
   maps[descriptor.name] = std::move(output);

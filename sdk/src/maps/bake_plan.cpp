@@ -13,7 +13,7 @@ constexpr std::size_t least_job_bytes = std::size_t{8} << 20;  // below it Jobs 
 constexpr std::size_t shader_floats = std::numeric_limits<std::int32_t>::max();  // shaders count in int
 
 bool layers_are_apart(const MapDescriptor& map, AddressMode address) {
-  return map.passes == 1 ||
+  return map.passes == std::vector<int>{1} ||
          std::find(map.layers_apart.begin(), map.layers_apart.end(), to_string(address)) != map.layers_apart.end();
 }
 

@@ -17,7 +17,8 @@
 #include "shaders/lib/cone_windows.glsl"
 #include "shaders/lib/sector.glsl"
 
-const int directional_cone_border_pass = RELIEVO_CONE_WINDOW_PASSES + 1;
+// Phases of the passes; map.toml has how many passes each takes.
+const int DIRECTIONAL_CONE_BEGIN = 0, DIRECTIONAL_CONE_GROW = 1, DIRECTIONAL_CONE_BORDER = 2;
 
 struct Sector {
   ivec2 heading;
@@ -96,7 +97,7 @@ void directional_cone_grow(ivec2 cell, Sector sector, int columns, int growth, i
                                 directional_cone_window(ahead + high * sector.across, sector, from)));
   if (sector.cuts == 0) after = max(after, directional_cone_window(cell + growth * sector.across, sector, from));
   relievo_bake_write(cell, to, after);
-  if (after <= before) return;
+  if (after <= before || columns - 1 > directional_cone_reach) return;
   precise float slope = (after - directional_cone_apex(cell, sector.heading)) / float(columns - 1);
   relievo_bake_write(cell, 2, max(relievo_bake_read(cell, relievo_bake_layer(), 2), slope));
 }
@@ -118,15 +119,13 @@ float directional_cone_slope(ivec2 cell, Sector sector) {
 }
 
 void relievo_bake(ivec2 cell) {
-  int pass = relievo_bake_pass();
   Sector sector = directional_cone_sector();
-  if (pass == 0) {
+  if (RELIEVO_BAKE_PHASE == DIRECTIONAL_CONE_BEGIN) {
     directional_cone_begin(cell, sector);
-  } else if (pass < directional_cone_border_pass) {
-    int columns = relievo_cone_window(pass);
-    if (columns - 1 > directional_cone_reach) return;
-    directional_cone_grow(cell, sector, columns, relievo_cone_growth(pass), (pass - 1) % 2, pass % 2);
-  } else if (pass == directional_cone_border_pass) {
+  } else if (RELIEVO_BAKE_PHASE == DIRECTIONAL_CONE_GROW) {
+    int pass = relievo_bake_pass();
+    directional_cone_grow(cell, sector, relievo_cone_window(pass), relievo_cone_growth(pass), (pass - 1) % 2, pass % 2);
+  } else if (RELIEVO_BAKE_PHASE == DIRECTIONAL_CONE_BORDER) {
     relievo_bake_write(cell, 0, relievo_cone_encode(directional_cone_slope(cell, sector)));
   } else {
     relievo_bake_write(cell, 2, relievo_bake_read(cell, relievo_bake_layer(), 0));

@@ -43,7 +43,7 @@ void quadrant_maxima_pack(ivec2 texel) {
 }
 
 void relievo_bake(ivec2 texel) {
-  int pass = relievo_bake_pass();
+  const int pass = RELIEVO_BAKE_PHASE;  // each is a program of its own
   if (pass == QUADRANT_MAXIMA_PACK) {
     quadrant_maxima_pack(texel);
   } else {

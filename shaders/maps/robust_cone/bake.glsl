@@ -10,6 +10,9 @@
 #include "shaders/lib/cone_windows.glsl"
 #include "shaders/lib/fold.glsl"
 
+// Phases of the passes; map.toml has how many passes each takes.
+const int ROBUST_CONE_BEGIN = 0, ROBUST_CONE_GROW = 1;
+
 float robust_cone_highest(ivec2 cell) {
   FoldedCell folded = relievo_fold_cell(vec2(cell), vec2(relievo_bake_extent()), vec2(1.0));
   return texelFetch(relievo_max_pyramid_map, ivec2(folded.cell), 0).r;
@@ -38,20 +41,18 @@ void robust_cone_grow(ivec2 cell, int radius, int growth, int from, int to) {
                     max(robust_cone_window(cell + ivec2(-growth, growth), from),
                         robust_cone_window(cell + ivec2(growth, growth), from)));
   relievo_bake_write(cell, to, after);
-  if (after <= before) return;
+  if (after <= before || radius > robust_cone_reach) return;
   precise float slope = (after - robust_cone_apex(cell)) / float(radius);
   relievo_bake_write(cell, 2, max(relievo_bake_read(cell, 0, 2), slope));
 }
 
 void relievo_bake(ivec2 cell) {
-  int pass = relievo_bake_pass();
-  if (pass == 0) {
+  if (RELIEVO_BAKE_PHASE == ROBUST_CONE_BEGIN) {
     relievo_bake_write(cell, 0, robust_cone_apex(cell));
     for (int channel = 1; channel < 3; ++channel) relievo_bake_write(cell, channel, 0.0);
-  } else if (pass <= RELIEVO_CONE_WINDOW_PASSES) {
-    int radius = relievo_cone_window(pass) - 1;
-    if (radius <= robust_cone_reach)
-      robust_cone_grow(cell, radius, relievo_cone_growth(pass), (pass - 1) % 2, pass % 2);
+  } else if (RELIEVO_BAKE_PHASE == ROBUST_CONE_GROW) {
+    int pass = relievo_bake_pass();
+    robust_cone_grow(cell, relievo_cone_window(pass) - 1, relievo_cone_growth(pass), (pass - 1) % 2, pass % 2);
   } else {
     relievo_bake_write(cell, 0, robust_cone_highest(cell));
     relievo_bake_write(cell, 1, robust_cone_apex(cell));

@@ -22,7 +22,7 @@ int relievo_cell = 0;
 struct Hit {
   int status;
   float t;
-  vec3 point;  // (u, v, H) at t
+  vec3 point;  // (u, v, H) at t; u and v may lack whole tiles where the stage lets them (RELIEVO_HITS_WITHIN_TILE)
 };
 
 // Cost of the current invocation: loop iterations and texel reads. Counted by instrumented permutations only.

@@ -13,6 +13,7 @@ struct Walk {
   vec2 base_cell;      // at s = 0
   vec2 base_fraction;  // in [0, 1)
   float base_height;
+  float base_height_rest;  // what base_height lacks of the ray's, so that walks that start anew do not drift
   float base_t;
   vec2 lead, rest;     // the direction in cells: lead has 9 bits
   vec2 slope;          // lead + rest, in one float
@@ -73,8 +74,8 @@ bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk)
   relievo_two_product(clamp(relievo_walk_first_period(ray.origin.xy), -RELIEVO_WALK_FAR, RELIEVO_WALK_FAR), walk.extent,
                       start, start_error);
   relievo_two_product(ray.direction.xy, walk.extent, way, way_error);
-  relievo_two_product(vec2(min(interval.enter, 1.0e15)), way, move, move_error);
-  relievo_two_product(vec2(min(interval.enter, 1.0e15)), ray.direction.zz, fall, fall_error);
+  relievo_two_product(vec2(min(interval.enter, 1.0e30)), way, move, move_error);
+  relievo_two_product(vec2(min(interval.enter, 1.0e30)), ray.direction.zz, fall, fall_error);
   bool at_lid = relievo_enters_at_lid(ray, interval);
   precise float to_lid = ((1.0 - ray.origin.z) - fall.x) - fall_error.x;
   precise float height = (ray.origin.z + fall.x) + fall_error.x;
@@ -87,6 +88,7 @@ bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk)
   walk.base_fraction = fraction;
   walk.base_cell = start_cell + move_cell + near_cell;
   walk.base_height = at_lid ? 1.0 : height;
+  walk.base_height_rest = 0.0;
   walk.base_t = interval.enter;
 
   // A power of two, by which nothing is rounded.
@@ -102,8 +104,10 @@ bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk)
   walk.slope = slope;
   walk.rise = ray.direction.z * t_per_s;
   walk.t_per_s = t_per_s;
+  // Far above the lid, enter and exit are two t that floats hardly tell apart; the base is where the walk has come down to it.
   precise float end = (interval.exit - interval.enter) * s_per_t;
-  walk.end = end;
+  precise float to_base = max(walk.base_height, 0.0) / max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER);
+  walk.end = interval.end_status == RELIEVO_HIT && to_base < RELIEVO_WALK_NEVER ? to_base : end;
   walk.heading = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(slope, vec2(0.0)));
   walk.behind_at_zero = mix(vec2(1.0), vec2(0.0), greaterThanEqual(slope, vec2(0.0)));
   precise vec2 pace = 1.0 / max(abs(slope), vec2(1.0 / RELIEVO_WALK_NEVER));
@@ -134,20 +138,33 @@ vec2 relievo_walk_on(vec2 s, float distance) {
   return vec2(s.x + units, part - units);
 }
 
-// A walk that has come far starts anew where it is, with s = 0.
-bool relievo_walk_is_far(vec2 s) { return s.x >= 32768.0; }
+// A walk that has come far starts anew where it is, with s = 0: before the next stretch, a map's width at most where the map
+// repeats, takes s.x to where its products are no longer exact.
+bool relievo_walk_is_far(vec2 s) { return s.x >= 16384.0; }
 
-void relievo_walk_rebase_to(WalkPlace place, inout Walk walk, inout vec2 s) {
+void relievo_walk_rebase_to(inout WalkPlace place, inout Walk walk, inout vec2 s) {
+  // The height that one float a stretch would lose is carried on, or walks would drift: rise = lead + small, as above.
+  precise float lead = intBitsToFloat(floatBitsToInt(walk.rise) & int(0xffff8000u));
+  precise float small = s.x * (walk.rise - lead) + (s.y * walk.rise + walk.base_height_rest);
+  precise float fall = s.x * lead;
+  precise float sum = walk.base_height + fall;
+  precise float of_fall = sum - walk.base_height;
+  precise float lost = (walk.base_height - (sum - of_fall)) + (fall - of_fall);  // Knuth's sum of two
+  precise float height = sum + (lost + small);
+  precise float rest = (lost + small) - (height - sum);
   walk.base_t = relievo_walk_t(walk, s);
   walk.end -= s.x + s.y;
   walk.base_cell = relievo_fold_to_first_period(place.cell, walk.extent);
   walk.base_fraction = place.fraction;
-  walk.base_height = place.height;
+  walk.base_height = height;
+  walk.base_height_rest = rest;
+  place = WalkPlace(walk.base_cell, walk.base_fraction, walk.base_height);
   s = vec2(0.0);
 }
 
 void relievo_walk_rebase(inout Walk walk, inout vec2 s) {
-  relievo_walk_rebase_to(relievo_walk_place(walk, s), walk, s);
+  WalkPlace place = relievo_walk_place(walk, s);
+  relievo_walk_rebase_to(place, walk, s);
 }
 
 // How far it still is to the end of the interval.
@@ -170,7 +187,8 @@ float relievo_walk_solve(Walk walk, WalkPlace place, vec4 corners, float reach) 
   return share <= 1.0 ? share * reach : RELIEVO_WALK_NEVER;
 }
 
-// (u, v) at t, where the walk has come to `place`: far out a float t tells places apart worse than the walk.
+// (u, v) at t, where the walk has come to `place`: far out a float t tells places apart worse than the walk. Within a tile for
+// stages that ask for it; there whole tiles do not matter, so that cells beyond those that fold exactly are no harm.
 vec2 relievo_walk_uv(Ray ray, Walk walk, WalkPlace place, float t) {
 #if RELIEVO_HITS_WITHIN_TILE
   vec2 cell = place.cell - walk.extent * relievo_fold_periods(place.cell, walk.extent);
@@ -189,12 +207,14 @@ vec2 relievo_walk_uv(Ray ray, Walk walk, WalkPlace place, float t) {
   return uv;
 }
 
-// Where a falling ray meets the base, or where the walk starts if that lies below.
-Hit relievo_walk_base_hit(Ray ray, Walk walk, float t) {
-  precise float s = max(walk.base_height / -walk.rise, 0.0);
-  WalkPlace place = relievo_walk_place(walk, relievo_walk_on(vec2(0.0), s));
-  return Hit(RELIEVO_HIT, t, vec3(relievo_walk_uv(ray, walk, place, t), min(walk.base_height, 0.0)));
+// s where a falling ray meets the base, or where the walk starts if that lies below.
+vec2 relievo_walk_base(Walk walk) {
+  precise float s = max(walk.base_height + walk.base_height_rest, 0.0) / max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER);
+  return relievo_walk_on(vec2(0.0), s);
 }
+
+// Whether floats of s tell where that is.
+bool relievo_walk_falls(Walk walk) { return -walk.rise >= 1.0 / RELIEVO_WALK_NEVER; }
 
 Hit relievo_walk_hit(Ray ray, Walk walk, vec2 s) {
   WalkPlace place = relievo_walk_place(walk, s);

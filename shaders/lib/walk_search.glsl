@@ -58,8 +58,15 @@ bool relievo_search_begin(Ray ray, ivec2 extent, out Interval interval, out Walk
 
 Hit relievo_search_result(Ray ray, Interval interval, Walk walk, WalkSearch search) {
   if (search.starts_inside) return relievo_hit_at(ray, RELIEVO_INSIDE, 0.0);
-  if (search.hit < RELIEVO_WALK_NEVER) return relievo_walk_hit(ray, walk, relievo_walk_on(search.s, search.hit));
-  if (search.ends && interval.end_status == RELIEVO_HIT) return relievo_walk_base_hit(ray, walk, interval.exit);
+  bool is_hit = search.hit < RELIEVO_WALK_NEVER;
+  bool is_at_base = !is_hit && search.ends && interval.end_status == RELIEVO_HIT && relievo_walk_falls(walk);
+  if (is_hit || is_at_base) {
+    vec2 s = relievo_walk_on(search.s, search.hit);
+    if (is_at_base) s = relievo_walk_base(walk);
+    Hit hit = relievo_walk_hit(ray, walk, s);
+    if (is_at_base) hit = Hit(RELIEVO_HIT, interval.exit, vec3(hit.point.xy, min(walk.base_height, 0.0)));
+    return hit;
+  }
   if (search.ends) return relievo_end_of(ray, interval);
   return relievo_hit_at(ray, RELIEVO_EXHAUSTED, clamp(relievo_walk_t(walk, search.s), interval.enter, interval.exit));
 }

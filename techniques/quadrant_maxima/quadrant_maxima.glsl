@@ -156,10 +156,7 @@ Hit quadrant_maxima_trace(Ray ray) {
     search.s = relievo_walk_on(search.s, on);
     on = 0.0;
     place = relievo_walk_place(walk, search.s);
-    if (relievo_walk_is_far(search.s)) {
-      relievo_walk_rebase_to(place, walk, search.s);
-      place.cell = walk.base_cell;
-    }
+    if (relievo_walk_is_far(search.s)) relievo_walk_rebase_to(place, walk, search.s);
     if (is_blocked) {
       // The next glide starts here and not behind the cell, so that it need not wait for the solution to be prepared.
       float border = relievo_search_cell(walk, place, relievo_cell_corners_at(place.cell, walk.extent), search);

@@ -187,17 +187,50 @@ TEST(Trace, AHitThousandsOfTilesAwayKeepsItsPlace) {
   for (int i = 0; i < 32; ++i) {
     const float turn = 0.2f * static_cast<float>(i);
     rays.push_back({0.3, 0.6, 20.0 + i, std::cos(turn), std::sin(turn), -0.0174532924});
+    rays.push_back({0.015625, 0.0078125, 20.0 + i, 1.0 - i % 2, 0.0 + i % 2, -0.0174532924});  // along a trench
   }
   for (const AddressMode mode : {AddressMode::repeat, AddressMode::mirror, AddressMode::clamp}) {
     const HeightMap map = with_address(plateau_map(31, 44), mode);
     const std::vector<Hit> truth = Oracle(map).trace(rays);
+    EXPECT_TRUE(std::any_of(truth.begin(), truth.end(), [](const Hit& hit) { return hit.h < 1e-12; }));
     for (const std::string& name : both_backends) {
       for (const char* technique : {"exact", "quadrant_maxima", "robust_cone", "directional_cone"}) {
         const ErrorFigures figures = compare_hits(truth, trace_on(name, map, rays, request_of(technique)), 31, 44);
-        EXPECT_EQ(figures.missed + figures.false_hit + figures.wrong_layer, 0u) << technique << " on " << name;
+        EXPECT_GE(figures.judged, 32u);
+        EXPECT_EQ(figures.wrong_percent() + figures.percent(figures.exhausted), 0) << technique << " on " << name;
         EXPECT_LT(figures.uv_texels.max, 5e-4) << technique << " on " << name << ", " << to_string(mode);
       }
     }
+  }
+}
+
+TEST(Trace, AWalkThatStartsAnewManyTimesDoesNotDrift) {
+  // From the lid to the base in 400 tiles of 2048 texels; what one float of height loses at a start is then 0.02 texel.
+  const HeightMap map = constant_map(2048, 3, 0);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 16; ++i) {
+    const float turn = 0.39f * static_cast<float>(i);
+    rays.push_back({0.3, 0.6, 1, std::cos(turn), std::sin(turn), -0.002223729155957699});
+  }
+  const std::vector<Hit> truth = Oracle(map).trace(rays);
+  for (const char* technique : {"exact", "quadrant_maxima", "robust_cone", "directional_cone"}) {
+    const std::string budget = std::string(technique) + ".max_steps";
+    const auto hits = trace_on("vulkan", map, rays, request_of(technique, {{budget, 65536}}));
+    const ErrorFigures figures = compare_hits(truth, hits, 2048, 3);
+    EXPECT_EQ(figures.judged, rays.size()) << technique;
+    EXPECT_EQ(figures.wrong_percent() + figures.percent(figures.exhausted), 0) << technique;
+    EXPECT_LT(figures.uv_texels.max, 2e-3) << technique;
+  }
+}
+
+TEST(Trace, ARayFromMilesAboveMeetsWhatIsLowToo) {
+  // t of lid and base differ by a few roundings; heights that are met on the way count all the same.
+  const HeightMap map = constant_map(5, 4, 0.003f);
+  const Ray ray = {0.25, 0.25, 1e5, 0.3f, 0, -0.3f};
+  for (const char* technique : {"exact", "quadrant_maxima", "robust_cone", "directional_cone"}) {
+    const Hit hit = trace_one(map, ray, request_of(technique));
+    EXPECT_EQ(hit.status, HitStatus::hit) << technique;
+    EXPECT_NEAR(hit.h, 0.003, 1e-6) << technique;
   }
 }
 
@@ -282,7 +315,7 @@ TEST(Trace, RaysThatAreNoRaysMissWithFiniteNumbers) {
   std::vector<Ray> rays;
   for (const double bad : {not_a_number, infinity, -infinity}) {
     for (int field = 0; field < 6; ++field) {
-      Ray ray{0.25, 0.25, 1, 0.5, 0.25, -1};
+      Ray ray{100.25, -70.5, 1, 0.5, 0.25, -1};
       double* fields[] = {&ray.u, &ray.v, &ray.h, &ray.du, &ray.dv, &ray.dh};
       *fields[field] = bad;
       rays.push_back(ray);

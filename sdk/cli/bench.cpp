@@ -51,6 +51,17 @@ nlohmann::json row_of(const TraceRequest& request, const TraceResult& timed, con
   return row;
 }
 
+/// What the backend runs a request with, of the parameters that it reads and that are not as they are described.
+ValueTexts values_of(const Registry& registry, const BackendInfo& backend, const TraceRequest& request) {
+  const std::vector<std::string>& maps = registry.techniques.at(request.technique).maps;
+  ValueTexts texts = to_texts(registry, values_on(registry, backend, request.values));
+  std::erase_if(texts, [&](const auto& entry) {
+    const std::string owner = entry.first.substr(0, entry.first.find('.'));
+    return owner != "ray" && owner != request.technique && std::find(maps.begin(), maps.end(), owner) == maps.end();
+  });
+  return texts;
+}
+
 /// Bytes of all maps that a technique reads, the height map included, as textures.
 std::size_t map_bytes(const Registry& registry, const std::string& technique, const MapSet& maps) {
   std::size_t bytes = 0;
@@ -79,7 +90,8 @@ Result<nlohmann::json> race(const BenchOptions& options, const HeightMap& height
               {"peak_bytes", rival->peak_bytes},
               {"build_s", rival->build_seconds},
               {"threads", options.embree_threads},
-              {"method", best.method}});
+              {"method", best.method},
+              {"values", nlohmann::json::object()}});
   for (const RivalRun& run : rival->runs) row["methods"][run.method] = median(run.seconds);
   return row;
 }
@@ -126,13 +138,12 @@ Status run_bench(const Context& context, const BenchOptions& options) {
   Result<std::vector<TraceResult>> timed = trace(**backend, *registry, maps, rays, *timing, options.repeat);
   if (!timed) return tl::unexpected(timed.error());
   std::vector<Hit> truth = Oracle(*height).trace(rays);
-  const ValueTexts own = own_values(*registry, (*backend)->info());
   nlohmann::json rows = nlohmann::json::array();
   double reference = median(timed->front().seconds);
   for (std::size_t k = 0; k < timing->size(); ++k) {
     ErrorFigures figures = compare_hits(truth, (*counted)[k].hits, height->width, height->height);
     rows.push_back(row_of((*timing)[k], (*timed)[k], figures, reference));
-    rows.back()["own_values"] = own;
+    rows.back()["values"] = values_of(*registry, (*backend)->info(), (*timing)[k]);
     rows.back()["map_bytes"] = map_bytes(*registry, (*timing)[k].technique, maps);
   }
   if (options.embree) {
@@ -144,6 +155,7 @@ Status run_bench(const Context& context, const BenchOptions& options) {
     fmt::print("{}\n", rows.dump(2));
   } else {
     print_table(rows);
+    const ValueTexts own = own_values(*registry, (*backend)->info());
     if (!own.empty()) fmt::print("{}: {}, unless --set says otherwise\n", (*backend)->info().device, to_text(own));
   }
   return {};

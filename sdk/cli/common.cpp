@@ -122,11 +122,15 @@ Result<Settings> parse_settings(const Registry& registry, const std::vector<std:
   return settings;
 }
 
-ValueTexts own_values(const Registry& registry, const BackendInfo& backend) {
+ValueTexts to_texts(const Registry& registry, const std::map<std::string, double>& values) {
   const std::map<std::string, const Parameter*> known = known_parameters(registry);
   ValueTexts texts;
-  for (const auto& [name, value] : values_on(registry, backend, {})) texts[name] = value_text(*known.at(name), value);
+  for (const auto& [name, value] : values) texts[name] = value_text(*known.at(name), value);
   return texts;
+}
+
+ValueTexts own_values(const Registry& registry, const BackendInfo& backend) {
+  return to_texts(registry, values_on(registry, backend, {}));
 }
 
 std::string to_text(const ValueTexts& values) {

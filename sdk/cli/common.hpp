@@ -47,6 +47,8 @@ Result<Settings> parse_settings(const Registry& registry, const std::vector<std:
 /// Parameters by name, with their values as --set takes them.
 using ValueTexts = std::map<std::string, std::string>;
 
+ValueTexts to_texts(const Registry& registry, const std::map<std::string, double>& values);
+
 /// What requests on the backend have that leave the axes open (values_on).
 ValueTexts own_values(const Registry& registry, const BackendInfo& backend);
 

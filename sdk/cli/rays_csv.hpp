@@ -15,7 +15,7 @@ Result<std::vector<Ray>> read_rays(const std::string& path);
 /// Significant digits by which numbers can be read back as they were: 9 for a float, 17 for a double.
 struct HitDigits {
   int distance;  ///< t and h
-  int place;     ///< u and v: of a backend a float within its tile
+  int place;     ///< u and v: a float within a tile is none any more once tiles are added
 };
 inline constexpr HitDigits backend_digits = {9, 17}, oracle_digits = {17, 17};
 

@@ -85,6 +85,20 @@ TEST_P(EveryCertifiedMap, BreaksItsPromiseWhenItsTexelsAreMoved) {
 INSTANTIATE_TEST_SUITE_P(Certify, EveryCertifiedMap, ::testing::ValuesIn(certified_maps()),
                          [](const auto& map) { return map.param; });
 
+/// The windows by which they are baked have to grow that far: map.toml says how many passes do.
+TEST(Certify, ConesHoldAsFarAsTheyReachAtMost) {
+  HeightMap spike = constant_map(700, 3, 0);
+  spike.texels[0] = 1;
+  for (const char* name : {"robust_cone", "directional_cone"}) {
+    const MapDescriptor& descriptor = registry().maps.at(name);
+    auto values = default_values(descriptor);
+    for (const Parameter& parameter : descriptor.parameters) {
+      if (parameter.name == "reach") values[std::string(name) + ".reach"] = parameter.maximum;
+    }
+    EXPECT_EQ(certified(spike, baked(name, spike, values), values).violations, 0U) << name;
+  }
+}
+
 TEST(Certify, AllMapsThatPromiseABoundHaveACertifier) {
   const std::vector<std::string> certified_names = certified_maps();
   for (const auto& [name, map] : registry().maps) {

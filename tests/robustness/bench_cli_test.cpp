@@ -39,6 +39,17 @@ TEST(BenchCli, EmbreeFindsWhatTheOracleFindsOnPlanes) {
   }
 }
 
+TEST(BenchCli, EveryRowSaysWithWhichValuesItRan) {
+  const auto own = bench(ramp_map(8, 8), {"--techniques", "quadrant_maxima"});
+  using Texts = std::map<std::string, std::string>;
+  EXPECT_EQ(own[0]["values"].get<Texts>(), (Texts{{"ray.scale", "0.1"}, {"ray.storage", "image"}})) << "exact";
+  EXPECT_EQ(own[1]["values"].get<Texts>(),
+            (Texts{{"quadrant_maxima.fetch", "image"}, {"ray.scale", "0.1"}, {"ray.storage", "image"}}));
+  EXPECT_EQ(own[2]["values"].get<Texts>(), Texts()) << "Embree";
+  const auto set = bench(ramp_map(8, 8), {"--set", "ray.storage=buffer"});
+  EXPECT_EQ(set[0]["values"].get<Texts>(), (Texts{{"ray.scale", "0.1"}, {"ray.storage", "buffer"}}));
+}
+
 TEST(BenchCli, TheSameComparisonSeesThatTrianglesAreNotTheSurface) {
   const auto rows = bench(checker_map(32, 32), {"--angle", "15"});
   ASSERT_EQ(rows.size(), 2U) << rows;

@@ -83,6 +83,20 @@ const std::string good_glsl =
     "#include \"shaders/lib/interval.glsl\"\n\n"
     "Hit mine_trace(Ray ray) { return relievo_hit_at(ray, RELIEVO_MISS, 0.0); }\n";
 
+TEST_F(Cli, HitsFarAwayAreWrittenWithAllTheirDigits) {
+  folder_.write("rays.csv", "u,v,h,du,dv,dh\n70000.40625,0.5,1,0.25,0,-1\n");
+  std::vector<double> u;
+  for (const char* backend : {"oracle", "vulkan"}) {
+    const ChildResult traced = run_relievo({"trace", "--technique", "exact", "--height", path("height.pfm"), "--rays",
+                                            path("rays.csv"), "--backend", backend, "-o", path("hits.csv")});
+    ASSERT_EQ(traced.exit_code, 0) << traced.err;
+    const std::string hits = TemporaryFolder::read(path("hits.csv"));
+    u.push_back(std::stod(hits.substr(hits.find(',', hits.find(',', hits.find('\n')) + 1) + 1)));
+  }
+  EXPECT_GT(u[0], 70000.4);
+  EXPECT_NEAR(u[0], u[1], 1e-6) << "nine digits leave five behind the point";
+}
+
 TEST_F(Cli, GoodInputSucceeds) {
   const ChildResult traced = run_relievo(trace(path("height.pfm"), path("rays.csv")));
   EXPECT_EQ(traced.exit_code, 0) << traced.err;

@@ -314,5 +314,22 @@ TEST(ComposeBake, AProvidedMapHasNothingToBake) {
   EXPECT_EQ(unknown.error().id, "describe.unknown-map");
 }
 
+TEST(ComposeBake, EachPhaseIsAProgramOfItsOwn) {
+  std::set<std::string> texts;
+  const int phases = static_cast<int>(registry().maps.at("robust_cone").passes.size());
+  for (int phase = 0; phase < phases; ++phase) {
+    const auto composed = compose_bake(registry(), "robust_cone", AddressMode::repeat, {}, {phase, 1});
+    ASSERT_TRUE(composed) << format(composed.error());
+    texts.insert(all_text(*composed));
+  }
+  EXPECT_EQ(texts.size(), 3u);
+  for (const BakeProgram wrong :
+       {BakeProgram{phases, 1}, BakeProgram{-1, 1}, BakeProgram{0, 0}, BakeProgram{0, most_bake_buffers + 1}}) {
+    const auto refused = compose_bake(registry(), "robust_cone", AddressMode::repeat, {}, wrong);
+    ASSERT_FALSE(refused) << wrong.phase << ", " << wrong.buffers;
+    EXPECT_EQ(refused.error().id, "compose.bake");
+  }
+}
+
 }  // namespace
 }  // namespace relievo::test

@@ -37,12 +37,17 @@ TEST(ParseMap, ReadsThePassesOfEveryPhase) {
     return parse_map(with(examples::map, "channels = 3", "channels = 3\npasses = " + passes), map_path);
   };
   EXPECT_EQ(parse_map(examples::map, map_path)->passes, std::vector<int>{1});
-  EXPECT_EQ(with_passes("5")->passes, std::vector<int>{5});
-  EXPECT_EQ(with_passes("[1, 27, 1]")->passes, (std::vector<int>{1, 27, 1}));
+  const auto one = with_passes("5"), three = with_passes("[1, 27, 1]");
+  ASSERT_TRUE(one) << format(one.error());
+  ASSERT_TRUE(three) << format(three.error());
+  EXPECT_EQ(one->passes, std::vector<int>{5});
+  EXPECT_EQ(three->passes, (std::vector<int>{1, 27, 1}));
   const auto zero = with_passes("[1, 0]");
   ASSERT_FALSE(zero);
-  EXPECT_EQ(zero.error().id, "describe.range");
-  EXPECT_NE(zero.error().message.find("is 0; an integer from 1 to 256"), std::string::npos) << format(zero.error());
+  examples::expect_error(zero.error(), "describe.range", 6, 14, "is 0; an integer from 1 to 256");
+  const auto many = with_passes("[1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1]");
+  ASSERT_FALSE(many);
+  examples::expect_error(many.error(), "describe.range", 6, 10, "17 phases; expected at most 16");
   for (const char* wrong : {"[]", "[1, \"two\"]", "1.5"}) {
     const auto refused = with_passes(wrong);
     ASSERT_FALSE(refused) << wrong;
@@ -153,14 +158,16 @@ const Fault map_faults[] = {
 
 INSTANTIATE_TEST_SUITE_P(Faults, ParseMapRejects, testing::ValuesIn(map_faults), examples::fault_name);
 
-class ParseStageRejects : public testing::TestWithParam<Fault> {};
-
 TEST(ParseStage, HitsAreContinuousUnlessTheyMayLackTiles) {
-  EXPECT_FALSE(parse_stage(examples::stage, stage_path)->hits_within_tile);
+  const auto continuous = parse_stage(examples::stage, stage_path);
+  ASSERT_TRUE(continuous) << format(continuous.error());
+  EXPECT_FALSE(continuous->hits_within_tile);
   const auto within = parse_stage(with(examples::stage, "mesh =", "hits = \"within_tile\"\nmesh ="), stage_path);
   ASSERT_TRUE(within) << format(within.error());
   EXPECT_TRUE(within->hits_within_tile);
 }
+
+class ParseStageRejects : public testing::TestWithParam<Fault> {};
 
 TEST_P(ParseStageRejects, WithItsPlace) {
   const Fault& fault = GetParam();

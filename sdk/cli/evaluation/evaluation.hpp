@@ -137,10 +137,10 @@ struct Evaluation {
   std::vector<std::string> messages;  ///< of the validation layer and the debug output
   std::vector<Check> checks;
   std::vector<NotRun> not_run;
-
-  /// Whether a row's reference or backend is one of them, and not the oracle or another stage.
-  bool has_backend(std::string_view name) const;
 };
+
+/// Whether a name in a row is that of one of its backends, and not the oracle's or a stage's.
+bool is_backend(const Evaluation& evaluation, std::string_view name);
 
 /// Runs everything. A backend that cannot be opened, or a stage that it cannot run, becomes a NotRun; an error of ours
 /// is returned.

@@ -6,8 +6,9 @@
 
 namespace relievo::cli {
 
-bool Evaluation::has_backend(std::string_view name) const {
-  return std::any_of(backends.begin(), backends.end(), [&](const EvaluatedBackend& b) { return b.info.name == name; });
+bool is_backend(const Evaluation& evaluation, std::string_view name) {
+  return std::any_of(evaluation.backends.begin(), evaluation.backends.end(),
+                     [&](const EvaluatedBackend& b) { return b.info.name == name; });
 }
 
 namespace {
@@ -76,7 +77,7 @@ void judge(const EvaluationInput& input, Evaluation& evaluation) {
       evaluation.picture_agreements, "pixels within 1/255 between backends", {Bound::least, pixels_within_percent},
       " %",
       [&](const PictureAgreement& p) {
-        return Judged{evaluation.has_backend(p.right), p.difference.within_percent,
+        return Judged{is_backend(evaluation, p.right), p.difference.within_percent,
                       fmt::format("{} {} of {}", p.stage, p.technique, p.scene)};
       },
       checks);

@@ -47,7 +47,7 @@ std::vector<std::string> scenes_of(const Evaluation& evaluation) {
 const PictureAgreement* agreement(const Evaluation& evaluation, const PictureRow& p, bool with_backend) {
   for (const PictureAgreement& a : evaluation.picture_agreements) {
     bool same = a.scene == p.scene && a.stage == p.stage && a.technique == p.technique;
-    if (same && evaluation.has_backend(a.right) == with_backend &&
+    if (same && is_backend(evaluation, a.right) == with_backend &&
         (a.left == p.backend || (with_backend && a.right == p.backend)))
       return &a;
   }

@@ -20,7 +20,7 @@ bool repeats_another(const Evaluation& evaluation, const PictureAgreement& row) 
   return std::any_of(evaluation.picture_agreements.begin(), evaluation.picture_agreements.end(),
                      [&](const PictureAgreement& a) {
                        constexpr double same_percent = 99.9;
-                       return same_picture(a, row) && a.right == row.left && evaluation.has_backend(a.left) &&
+                       return same_picture(a, row) && a.right == row.left && is_backend(evaluation, a.left) &&
                               a.difference.within_percent >= same_percent;
                      });
 }

@@ -75,14 +75,18 @@ struct ComposedProgram {
 /// range, a rule of an axis that is broken, a missing or escaping or self-including file ("compose.*").
 Result<ComposedProgram> compose(const Registry& registry, const Permutation& permutation);
 
+/// Storage buffers that the texels of a map may be spread over.
 constexpr int most_bake_buffers = 8;
 
 struct BakeProgram {
-  int phase = 0;    ///< of MapDescriptor::passes
-  int buffers = 1;  ///< storage buffers for the texels, from set 0, binding 2 on: 1 to most_bake_buffers
+  int phase = 0;    ///< which of MapDescriptor::passes
+  int buffers = 1;  ///< 1 to most_bake_buffers
 };
 
-/// Composes a compute program that bakes `map`; its parameters are keyed "map.parameter" (lib/bake.glsl).
+/// Composes the compute program of one phase of baking `map`; its parameters are keyed "map.parameter". It writes the
+/// texels to storage buffers, from set 0, binding 2 on (lib/bake_buffers.glsl). Errors: unknown names (nearest one
+/// given), a map that the caller provides, a phase or number of buffers out of range ("compose.bake"), a value out of
+/// range.
 Result<ComposedProgram> compose_bake(const Registry& registry, std::string_view map, AddressMode address,
                                      const std::map<std::string, double>& values = {}, BakeProgram program = {});
 

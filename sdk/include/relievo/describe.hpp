@@ -155,7 +155,7 @@ struct StageDescriptor {
   FeatureSet features;
   std::string fallback;           ///< the stage to use where a feature is missing; may be empty
   std::string mesh;               ///< what geometry it draws: "none" (compute), "base", "tessellated", "prisms"
-  bool hits_within_tile = false;  ///< u and v of hits may lack whole tiles, and are the more exact far from 0
+  bool hits_within_tile = false;  ///< u and v of hits may lack whole tiles (docs/descriptors.md says how to add them)
   std::string file;
 };
 

@@ -144,6 +144,12 @@ Result<ComposedProgram> compose_bake(const Registry& registry, std::string_view 
     return fail(ErrorCode::usage, "compose.provided-map",
                 fmt::format("map '{}' is given by the caller: there is nothing to bake", map_name));
   }
+  const int phases = static_cast<int>((*map)->passes.size());
+  if (bake.phase < 0 || bake.phase >= phases || bake.buffers < 1 || bake.buffers > most_bake_buffers) {
+    return fail(ErrorCode::usage, "compose.bake",
+                fmt::format("map '{}': phase {} into {} buffers; expected a phase from 0 to {} and 1 to {} buffers",
+                            map_name, bake.phase, bake.buffers, phases - 1, most_bake_buffers));
+  }
   std::vector<const MapDescriptor*> inputs;
   if (Status status = add_maps(registry, (*map)->inputs, inputs); !status) return tl::unexpected(status.error());
   sort_by_binding(inputs);

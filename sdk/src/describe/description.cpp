@@ -55,6 +55,7 @@ nlohmann::json description_of(const MapDescriptor& m) {
   json.update({{"inputs", m.inputs},
                {"channels", m.channels},
                {"levels", to_string(m.levels)},
+               {"passes", m.passes},
                {"sampler", m.sampler},
                {"set", m.set},
                {"binding", m.binding},
@@ -71,7 +72,7 @@ nlohmann::json description_of(const StageDescriptor& s) {
   json.update({{"roles", s.roles},
                {"maps", s.maps},
                {"mesh", s.mesh},
-               {"hits_within_tile", s.hits_within_tile},
+               {"hits", s.hits_within_tile ? "within_tile" : "continuous"},
                {"fallback", s.fallback},
                {"shaders", shaders}});
   return json;

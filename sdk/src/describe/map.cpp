@@ -16,6 +16,7 @@ constexpr std::array<std::string_view, 2> texel_names = {"unorm", "uint"};
 constexpr std::array<std::string_view, 10> image_formats = {"r8",     "rg8",  "rgba8", "r16",     "rg16",
                                                             "rgba16", "r32f", "rg32f", "rgba32f", "rgba16ui"};
 constexpr int max_layers = 256, max_passes = 256;
+constexpr std::size_t max_phases = 16;
 
 bool is_glsl_identifier(std::string_view name) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -88,6 +89,14 @@ void read_rounding(TomlReader& reader, MapDescriptor& map) {
   }
 }
 
+void read_passes(TomlReader& reader, MapDescriptor& map) {
+  if (!reader.has("passes")) return;
+  map.passes = reader.integers("passes", 1, max_passes);
+  if (map.passes.size() <= max_phases) return;
+  reader.report("describe.range",
+                fmt::format("\"passes\" has {} phases; expected at most {}", map.passes.size(), max_phases), "passes");
+}
+
 void read_map(TomlReader& reader, MapDescriptor& map) {
   reader.allow_keys({"schema", "name",       "title",  "source",           "summary", "inputs",       "channels",
                      "levels", "dimension",  "layers", "layers_parameter", "passes",  "layers_apart", "rounding",
@@ -98,7 +107,7 @@ void read_map(TomlReader& reader, MapDescriptor& map) {
   map.levels = reader.choice_of<MapLevels>("levels", level_names, MapLevels::single);
   read_layers(reader, map);
   read_rounding(reader, map);
-  if (reader.has("passes")) map.passes = reader.integers("passes", 1, max_passes);
+  read_passes(reader, map);
   map.layers_apart = reader.choices("layers_apart", {"repeat", "mirror", "clamp", "clip"}, "describe.range");
   map.is_uint = reader.choice("texels", texel_names, 0) == 1;
   map.sampler = read_sampler(reader);

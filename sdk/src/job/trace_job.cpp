@@ -94,8 +94,9 @@ struct PackedHit {
 };
 
 /// A hit's coordinate may lack whole tiles, since in a float it is the more exact the nearer it is to 0: they are those
-/// that bring it nearest to the ray.
-double with_tiles(float coordinate, double on_ray) {
+/// that bring it nearest to the ray, as the stage had it, at t.
+double with_tiles(float coordinate, double origin, double direction, double t) {
+  const double on_ray = t == 0 ? origin : origin + t * to_float(direction);
   const double tiles = std::round(on_ray - coordinate);
   return std::isfinite(tiles) ? coordinate + tiles : coordinate;
 }
@@ -104,8 +105,8 @@ Hit unpack(const PackedHit& packed, const Ray& ray) {
   Hit hit;
   hit.status = static_cast<HitStatus>(packed.word(status_word));
   hit.t = packed.number(t_word);
-  hit.u = with_tiles(packed.number(u_word), ray.u + hit.t * ray.du);
-  hit.v = with_tiles(packed.number(v_word), ray.v + hit.t * ray.dv);
+  hit.u = with_tiles(packed.number(u_word), ray.u, ray.du, hit.t);
+  hit.v = with_tiles(packed.number(v_word), ray.v, ray.dv, hit.t);
   hit.h = packed.number(h_word);
   hit.steps = packed.word(steps_word);
   hit.fetches = packed.word(fetches_word);

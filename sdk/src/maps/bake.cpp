@@ -66,6 +66,20 @@ void bind_texels(const BakePlan& plan, const BakeSlab& slab, Job& job, std::vect
 /// A program for each phase of a map's passes.
 using PhasePrograms = std::vector<PreparedProgram>;
 
+Result<PhasePrograms> prepare_phases(const Registry& registry, const MapDescriptor& map, AddressMode address,
+                                     const std::map<std::string, double>& values, int buffers,
+                                     std::string_view shader_target) {
+  PhasePrograms programs;
+  for (int phase = 0; phase < static_cast<int>(map.passes.size()); ++phase) {
+    Result<ComposedProgram> composed = compose_bake(registry, map.name, address, values, {phase, buffers});
+    if (!composed) return tl::unexpected(composed.error());
+    Result<PreparedProgram> prepared = prepare_composed(std::move(*composed), shader_target);
+    if (!prepared) return tl::unexpected(prepared.error());
+    programs.push_back(std::move(*prepared));
+  }
+  return programs;
+}
+
 /// The phase of every pass.
 std::vector<int> phases_of(const MapDescriptor& descriptor) {
   std::vector<int> phases;
@@ -170,23 +184,18 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
   const MapData& height = maps.find("height")->second;
   const std::map<std::string, double> own = values_for_bake(registry, descriptor, values);
   // Composing checks the values, of which the shape depends.
-  Result<ComposedProgram> composed = compose_bake(registry, name, height.address, own);
-  if (!composed) return tl::unexpected(composed.error());
+  if (auto checked = compose_bake(registry, name, height.address, own); !checked)
+    return tl::unexpected(checked.error());
   MapData output = map_shape(descriptor, height.width, height.height, height.address, own);
   const int bits = std::exchange(output.bits, 32);
   const Result<BakePlan> plan = plan_bake(output, descriptor, height, backend.info());
   if (!plan) return tl::unexpected(plan.error());
-  PhasePrograms programs;
-  for (int phase = 0; phase < static_cast<int>(descriptor.passes.size()); ++phase) {
-    const BakeProgram program = {phase, static_cast<int>(plan->buffers(plan->layers))};
-    composed = compose_bake(registry, name, height.address, own, program);
-    if (!composed) return tl::unexpected(composed.error());
-    Result<PreparedProgram> prepared = prepare_composed(std::move(*composed), backend.info().shader_target);
-    if (!prepared) return tl::unexpected(prepared.error());
-    programs.push_back(std::move(*prepared));
-  }
+  const int buffers = static_cast<int>(plan->buffers(plan->layers));
+  const Result<PhasePrograms> programs =
+      prepare_phases(registry, descriptor, height.address, own, buffers, backend.info().shader_target);
+  if (!programs) return tl::unexpected(programs.error());
   BakedTexels texels(descriptor, bits, static_cast<std::size_t>(output.depth) * plan->layer_floats);
-  Status baked = bake_texels(backend, programs, descriptor, maps, output, *plan, texels, messages);
+  Status baked = bake_texels(backend, *programs, descriptor, maps, output, *plan, texels, messages);
   if (!baked) return baked;
   if (Status status = texels.move_to(output); !status) return status;
   maps[descriptor.name] = std::move(output);

@@ -97,6 +97,7 @@ void directional_cone_grow(ivec2 cell, Sector sector, int columns, int growth, i
                                 directional_cone_window(ahead + high * sector.across, sector, from)));
   if (sector.cuts == 0) after = max(after, directional_cone_window(cell + growth * sector.across, sector, from));
   relievo_bake_write(cell, to, after);
+  // Asked together: of a condition on the pass alone, drivers would compile the program again for every pass.
   if (after <= before || columns - 1 > directional_cone_reach) return;
   precise float slope = (after - directional_cone_apex(cell, sector.heading)) / float(columns - 1);
   relievo_bake_write(cell, 2, max(relievo_bake_read(cell, relievo_bake_layer(), 2), slope));

@@ -41,6 +41,7 @@ void robust_cone_grow(ivec2 cell, int radius, int growth, int from, int to) {
                     max(robust_cone_window(cell + ivec2(-growth, growth), from),
                         robust_cone_window(cell + ivec2(growth, growth), from)));
   relievo_bake_write(cell, to, after);
+  // Asked together: of a condition on the pass alone, drivers would compile the program again for every pass.
   if (after <= before || radius > robust_cone_reach) return;
   precise float slope = (after - robust_cone_apex(cell)) / float(radius);
   relievo_bake_write(cell, 2, max(relievo_bake_read(cell, 0, 2), slope));

@@ -17,7 +17,8 @@ layout(std430, set = 0, binding = 2) readonly buffer Rays { vec4 rays[]; };
 layout(std430, set = 0, binding = 3) writeonly buffer Hits { uint hits[]; };
 #endif
 
-// Components of a hit, floats as their bits.
+// Components of a hit, floats as their bits. u and v may lack whole tiles: those are to be added that bring them nearest to
+// the ray's point at t.
 const int RAY_STATUS = 0, RAY_T = 1, RAY_U = 2, RAY_V = 3, RAY_H = 4;
 const int RAY_STEPS = 5, RAY_FETCHES = 6;  // only where they are counted
 

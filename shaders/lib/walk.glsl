@@ -65,6 +65,15 @@ vec2 relievo_walk_first_period(vec2 uv) {
   return first;
 }
 
+// How far it is from s = 0 to the base, which lies 0 away where the walk starts below.
+float relievo_walk_to_base(Walk walk) {
+  precise float s = max(walk.base_height + walk.base_height_rest, 0.0) / max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER);
+  return s;
+}
+
+// Whether floats of s tell where that is.
+bool relievo_walk_falls(Walk walk) { return -walk.rise >= 1.0 / RELIEVO_WALK_NEVER; }
+
 // Starts a walk at t = interval.enter, or exactly at the lid where that is meant: from far above, one float t tells places
 // apart worse than the walk. Returns false for places so far out that floats cannot tell cells apart, and for
 // directions so long that their products overflow.
@@ -106,8 +115,7 @@ bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk)
   walk.t_per_s = t_per_s;
   // Far above the lid, enter and exit are two t that floats hardly tell apart; the base is where the walk has come down to it.
   precise float end = (interval.exit - interval.enter) * s_per_t;
-  precise float to_base = max(walk.base_height, 0.0) / max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER);
-  walk.end = interval.end_status == RELIEVO_HIT && to_base < RELIEVO_WALK_NEVER ? to_base : end;
+  walk.end = interval.end_status == RELIEVO_HIT && relievo_walk_falls(walk) ? relievo_walk_to_base(walk) : end;
   walk.heading = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(slope, vec2(0.0)));
   walk.behind_at_zero = mix(vec2(1.0), vec2(0.0), greaterThanEqual(slope, vec2(0.0)));
   precise vec2 pace = 1.0 / max(abs(slope), vec2(1.0 / RELIEVO_WALK_NEVER));
@@ -206,15 +214,6 @@ vec2 relievo_walk_uv(Ray ray, Walk walk, WalkPlace place, float t) {
 #endif
   return uv;
 }
-
-// s where a falling ray meets the base, or where the walk starts if that lies below.
-vec2 relievo_walk_base(Walk walk) {
-  precise float s = max(walk.base_height + walk.base_height_rest, 0.0) / max(-walk.rise, 1.0 / RELIEVO_WALK_NEVER);
-  return relievo_walk_on(vec2(0.0), s);
-}
-
-// Whether floats of s tell where that is.
-bool relievo_walk_falls(Walk walk) { return -walk.rise >= 1.0 / RELIEVO_WALK_NEVER; }
 
 Hit relievo_walk_hit(Ray ray, Walk walk, vec2 s) {
   WalkPlace place = relievo_walk_place(walk, s);

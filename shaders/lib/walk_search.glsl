@@ -61,8 +61,7 @@ Hit relievo_search_result(Ray ray, Interval interval, Walk walk, WalkSearch sear
   bool is_hit = search.hit < RELIEVO_WALK_NEVER;
   bool is_at_base = !is_hit && search.ends && interval.end_status == RELIEVO_HIT && relievo_walk_falls(walk);
   if (is_hit || is_at_base) {
-    vec2 s = relievo_walk_on(search.s, search.hit);
-    if (is_at_base) s = relievo_walk_base(walk);
+    vec2 s = is_at_base ? relievo_walk_on(vec2(0.0), relievo_walk_to_base(walk)) : relievo_walk_on(search.s, search.hit);
     Hit hit = relievo_walk_hit(ray, walk, s);
     if (is_at_base) hit = Hit(RELIEVO_HIT, interval.exit, vec3(hit.point.xy, min(walk.base_height, 0.0)));
     return hit;

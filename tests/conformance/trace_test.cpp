@@ -15,6 +15,9 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 /// So many that a step over three map widths is under a quarter of a texel on the widest of the small maps (33).
 constexpr int fine_steps = 512;
 
+/// Those that promise the first hit always.
+constexpr const char* exact_techniques[] = {"exact", "quadrant_maxima", "robust_cone", "directional_cone"};
+
 TraceRequest fine_search() {
   return request_of("linear_search", {{"linear_search.steps", fine_steps}});
 }
@@ -173,7 +176,7 @@ TEST(Trace, ARayFromFarAboveEntersTheLidWhereItDoes) {
   const HeightMap map = with_address(plateau_map(31, 44), AddressMode::mirror);
   const Ray ray = {-51.13052099943161, 39.561673998832703, 43.9619484, 0.788251221, -0.615352452, -0.0115631092};
   const Hit truth = Oracle(map).trace(ray);
-  for (const char* technique : {"exact", "quadrant_maxima", "robust_cone", "directional_cone"}) {
+  for (const char* technique : exact_techniques) {
     const Hit hit = trace_one(map, ray, request_of(technique));
     EXPECT_EQ(hit.status, HitStatus::hit) << technique;
     EXPECT_NEAR(hit.t, truth.t, 0.01) << technique;
@@ -194,7 +197,7 @@ TEST(Trace, AHitThousandsOfTilesAwayKeepsItsPlace) {
     const std::vector<Hit> truth = Oracle(map).trace(rays);
     EXPECT_TRUE(std::any_of(truth.begin(), truth.end(), [](const Hit& hit) { return hit.h < 1e-12; }));
     for (const std::string& name : both_backends) {
-      for (const char* technique : {"exact", "quadrant_maxima", "robust_cone", "directional_cone"}) {
+      for (const char* technique : exact_techniques) {
         const ErrorFigures figures = compare_hits(truth, trace_on(name, map, rays, request_of(technique)), 31, 44);
         EXPECT_GE(figures.judged, 32u);
         EXPECT_EQ(figures.wrong_percent() + figures.percent(figures.exhausted), 0) << technique << " on " << name;
@@ -213,7 +216,7 @@ TEST(Trace, AWalkThatStartsAnewManyTimesDoesNotDrift) {
     rays.push_back({0.3, 0.6, 1, std::cos(turn), std::sin(turn), -0.002223729155957699});
   }
   const std::vector<Hit> truth = Oracle(map).trace(rays);
-  for (const char* technique : {"exact", "quadrant_maxima", "robust_cone", "directional_cone"}) {
+  for (const char* technique : exact_techniques) {
     const std::string budget = std::string(technique) + ".max_steps";
     const auto hits = trace_on("vulkan", map, rays, request_of(technique, {{budget, 65536}}));
     const ErrorFigures figures = compare_hits(truth, hits, 2048, 3);
@@ -227,7 +230,7 @@ TEST(Trace, ARayFromMilesAboveMeetsWhatIsLowToo) {
   // t of lid and base differ by a few roundings; heights that are met on the way count all the same.
   const HeightMap map = constant_map(5, 4, 0.003f);
   const Ray ray = {0.25, 0.25, 1e5, 0.3f, 0, -0.3f};
-  for (const char* technique : {"exact", "quadrant_maxima", "robust_cone", "directional_cone"}) {
+  for (const char* technique : exact_techniques) {
     const Hit hit = trace_one(map, ray, request_of(technique));
     EXPECT_EQ(hit.status, HitStatus::hit) << technique;
     EXPECT_NEAR(hit.h, 0.003, 1e-6) << technique;

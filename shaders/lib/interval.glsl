@@ -10,6 +10,12 @@ struct Interval {
 // Longest way in texture widths that a search covers when neither lid nor base nor t_max ends the ray.
 const float RELIEVO_MAX_TRAVEL = 1024.0;
 
+// t where a coordinate that changes comes to [0, 1].
+float relievo_side(float origin, float direction) {
+  precise float side = ((direction < 0.0 ? 1.0 : 0.0) - origin) / direction;
+  return side;
+}
+
 // Narrows the interval to the t where one coordinate lies in [0, 1]. No division by zero: a coordinate that does not
 // change is either within for all t or for none.
 void relievo_clip_axis(float origin, float direction, inout Interval interval) {
@@ -17,10 +23,8 @@ void relievo_clip_axis(float origin, float direction, inout Interval interval) {
     if (origin < 0.0 || origin > 1.0) interval = Interval(1.0, 0.0, RELIEVO_OUTSIDE);
     return;
   }
-  precise float at_zero = -origin / direction;
-  precise float at_one = (1.0 - origin) / direction;
-  float leave = max(at_zero, at_one);
-  interval.enter = max(interval.enter, min(at_zero, at_one));
+  interval.enter = max(interval.enter, relievo_side(origin, direction));
+  precise float leave = ((direction < 0.0 ? 0.0 : 1.0) - origin) / direction;
   if (leave < interval.exit) {
     interval.exit = leave;
     interval.end_status = RELIEVO_OUTSIDE;
@@ -73,6 +77,18 @@ bool relievo_interval(Ray ray, out Interval interval) {
 
 bool relievo_enters_at_lid(Ray ray, Interval interval) {
   return ray.origin.z > 1.0 && interval.enter == relievo_lid(ray);
+}
+
+// For each axis, whether it is there that the ray comes into the domain of a clip map.
+bvec2 relievo_enters_at_side(Ray ray, Interval interval) {
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
+  vec2 side = vec2(relievo_side(ray.origin.x, ray.direction.x), relievo_side(ray.origin.y, ray.direction.y));
+  bvec2 changes = notEqual(ray.direction.xy, vec2(0.0));
+  return bvec2(changes.x && interval.enter > 0.0 && interval.enter == side.x,
+               changes.y && interval.enter > 0.0 && interval.enter == side.y);
+#else
+  return bvec2(false);
+#endif
 }
 
 // The point at interval.enter, with H exact where that is the lid: a plateau at 1 is then touched, not missed by rounding.

@@ -23,6 +23,7 @@ struct Walk {
   vec2 heading;        // each +1 or −1
   vec2 pace;           // s a cell
   vec2 behind_at_zero; // |this − fraction| is how much of the cell lies behind
+  bool starts_within;  // the domain of a clip map: a ray may pass its corner by less than t tells
 };
 
 struct WalkPlace {
@@ -74,8 +75,8 @@ float relievo_walk_to_base(Walk walk) {
 // Whether floats of s tell where that is.
 bool relievo_walk_falls(Walk walk) { return -walk.rise >= 1.0 / RELIEVO_WALK_NEVER; }
 
-// Starts a walk at t = interval.enter, or exactly at the lid where that is meant: from far above, one float t tells places
-// apart worse than the walk. Returns false for places so far out that floats cannot tell cells apart, and for
+// Starts a walk at t = interval.enter, or exactly at the lid or the side where one of them is meant: from far away, one float t
+// tells places apart worse than the walk. Returns false for places so far out that floats cannot tell cells apart, and for
 // directions so long that their products overflow.
 bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk) {
   walk.extent = vec2(extent);
@@ -85,18 +86,25 @@ bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk)
   relievo_two_product(ray.direction.xy, walk.extent, way, way_error);
   relievo_two_product(vec2(min(interval.enter, 1.0e30)), way, move, move_error);
   relievo_two_product(vec2(min(interval.enter, 1.0e30)), ray.direction.zz, fall, fall_error);
-  bool at_lid = relievo_enters_at_lid(ray, interval);
-  precise float to_lid = ((1.0 - ray.origin.z) - fall.x) - fall_error.x;
-  precise float height = (ray.origin.z + fall.x) + fall_error.x;
-  float rest = at_lid ? to_lid / ray.direction.z : 0.0;
-  precise vec2 error = (start_error + (move_error + interval.enter * way_error + rest * way)) - 0.5;
   vec2 start_cell = floor(start), move_cell = floor(move);
-  precise vec2 near = ((start - start_cell) + (move - move_cell)) + error;
+  vec2 cell = start_cell + move_cell;
+  precise vec2 within = (start - start_cell) + (move - move_cell);
+  precise vec2 error = start_error + (move_error + interval.enter * way_error);
+  // What t lacks: where lid and sides are one float t, the ray enters where it has come to the last of them.
+  bool at_lid = relievo_enters_at_lid(ray, interval);
+  bvec2 at_side = relievo_enters_at_side(ray, interval);
+  precise float to_lid = ((1.0 - ray.origin.z) - fall.x) - fall_error.x;
+  precise vec2 to_side = ((mix(vec2(0.0), walk.extent, lessThan(way, vec2(0.0))) - cell) - within) - error;
+  float lid = at_lid ? to_lid / ray.direction.z : -RELIEVO_WALK_NEVER;
+  float side = max(at_side.x ? to_side.x / way.x : -RELIEVO_WALK_NEVER, at_side.y ? to_side.y / way.y : -RELIEVO_WALK_NEVER);
+  float rest = at_lid || any(at_side) ? max(lid, side) : 0.0;
+  precise vec2 near = within + ((error + rest * way) - 0.5);
   vec2 near_cell = floor(near);
   precise vec2 fraction = near - near_cell;
+  precise float height = (ray.origin.z + fall.x) + (fall_error.x + rest * ray.direction.z);
   walk.base_fraction = fraction;
-  walk.base_cell = start_cell + move_cell + near_cell;
-  walk.base_height = at_lid ? 1.0 : height;
+  walk.base_cell = cell + near_cell;
+  walk.base_height = at_lid && lid >= side ? 1.0 : height;
   walk.base_height_rest = 0.0;
   walk.base_t = interval.enter;
 
@@ -120,6 +128,14 @@ bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk)
   walk.behind_at_zero = mix(vec2(1.0), vec2(0.0), greaterThanEqual(slope, vec2(0.0)));
   precise vec2 pace = 1.0 / max(abs(slope), vec2(1.0 / RELIEVO_WALK_NEVER));
   walk.pace = pace;
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
+  precise vec2 from_first = (walk.base_cell + 0.5) + fraction;
+  precise vec2 to_last = (walk.extent - 0.5 - walk.base_cell) - fraction;
+  bvec2 is_within = greaterThanEqual(min(from_first, to_last), vec2(0.0));
+  walk.starts_within = (at_side.x || is_within.x) && (at_side.y || is_within.y);
+#else
+  walk.starts_within = true;
+#endif
   vec2 reach = max(abs(start), abs(interval.enter * way));
   return max(reach.x, reach.y) < RELIEVO_WALK_FAR && speed < RELIEVO_WALK_FAST;
 }

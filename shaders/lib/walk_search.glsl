@@ -52,8 +52,9 @@ bool relievo_search_begin(Ray ray, ivec2 extent, out Interval interval, out Walk
     hit = relievo_hit_at(ray, interval.end_status == RELIEVO_OUTSIDE ? RELIEVO_OUTSIDE : RELIEVO_MISS, 0.0);
     return false;
   }
-  hit = relievo_hit_at(ray, RELIEVO_EXHAUSTED, interval.enter);
-  return relievo_walk_start(ray, interval, extent, walk);
+  bool is_walk = relievo_walk_start(ray, interval, extent, walk);
+  hit = relievo_hit_at(ray, is_walk && !walk.starts_within ? RELIEVO_OUTSIDE : RELIEVO_EXHAUSTED, interval.enter);
+  return is_walk && walk.starts_within;
 }
 
 Hit relievo_search_result(Ray ray, Interval interval, Walk walk, WalkSearch search) {

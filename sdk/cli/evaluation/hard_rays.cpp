@@ -216,19 +216,37 @@ Ray side_ray(Source& s) {
   return ray;
 }
 
+/// The same from tens of tiles away, where a float t tells places on the side apart by a hundredth of a texel.
+Ray distant_side_ray(Source& s) {
+  Ray ray = side_ray(s);
+  const double back = s.random.uniform(20, 60);
+  ray.u -= back * ray.du, ray.v -= back * ray.dv, ray.h -= back * ray.dh;
+  if (ray.dh == 0) ray.t_max += back;
+  return ray;
+}
+
 struct RayKind {
   std::string_view name;
   Ray (*make)(Source&);
 };
 
-constexpr std::array kinds = {RayKind{"above", above_ray},         RayKind{"axis_parallel", axis_parallel_ray},
-                              RayKind{"corner", corner_ray},       RayKind{"far", far_ray},
-                              RayKind{"grid_line", grid_line_ray}, RayKind{"horizontal", horizontal_ray},
-                              RayKind{"inside", inside_ray},       RayKind{"lid", lid_ray},
-                              RayKind{"limited", limited_ray},     RayKind{"any_length", long_or_short_ray},
-                              RayKind{"random", random_ray},       RayKind{"rising", rising_ray},
-                              RayKind{"sheared", sheared_ray},     RayKind{"side", side_ray},
-                              RayKind{"surface", surface_ray},     RayKind{"tangent", tangent_ray},
+constexpr std::array kinds = {RayKind{"above", above_ray},
+                              RayKind{"axis_parallel", axis_parallel_ray},
+                              RayKind{"corner", corner_ray},
+                              RayKind{"distant_side", distant_side_ray},
+                              RayKind{"far", far_ray},
+                              RayKind{"grid_line", grid_line_ray},
+                              RayKind{"horizontal", horizontal_ray},
+                              RayKind{"inside", inside_ray},
+                              RayKind{"lid", lid_ray},
+                              RayKind{"limited", limited_ray},
+                              RayKind{"any_length", long_or_short_ray},
+                              RayKind{"random", random_ray},
+                              RayKind{"rising", rising_ray},
+                              RayKind{"sheared", sheared_ray},
+                              RayKind{"side", side_ray},
+                              RayKind{"surface", surface_ray},
+                              RayKind{"tangent", tangent_ray},
                               RayKind{"vertical", vertical_ray}};
 
 /// As job/trace_job.cpp splits it.

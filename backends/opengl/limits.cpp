@@ -29,6 +29,11 @@ Status check_texture(const Texture& texture, const Limits& limits) {
   auto status = at_most(fmt::format("the longest edge of texture '{}'", texture.name), edge,
                         is_3d ? limits.texture_3d_size : limits.texture_size);
   if (!status) return status;
+  if (texture.is_array) {
+    status =
+        at_most(fmt::format("the number of layers of texture '{}'", texture.name), texture.depth, limits.array_layers);
+    if (!status) return status;
+  }
   // glGetTextureImage counts bytes in an int.
   return at_most(fmt::format("the size in bytes of texture '{}'", texture.name),
                  static_cast<std::int64_t>(level_size(texture, 0)), std::numeric_limits<GLsizei>::max());
@@ -105,6 +110,7 @@ Limits query_limits() {
   Limits limits;
   limits.texture_size = query(GL_MAX_TEXTURE_SIZE);
   limits.texture_3d_size = query(GL_MAX_3D_TEXTURE_SIZE);
+  limits.array_layers = query(GL_MAX_ARRAY_TEXTURE_LAYERS);
   limits.uniform_block_size = query(GL_MAX_UNIFORM_BLOCK_SIZE);
   limits.storage_block_size = query(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
   limits.uniform_blocks = query(GL_MAX_UNIFORM_BUFFER_BINDINGS);

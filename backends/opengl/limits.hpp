@@ -10,7 +10,8 @@
 namespace relievo::opengl {
 
 struct Limits {
-  std::int64_t texture_size = 0, texture_3d_size = 0;           ///< texels along an edge
+  std::int64_t texture_size = 0, texture_3d_size = 0;  ///< texels along an edge
+  std::int64_t array_layers = 0;
   std::int64_t uniform_block_size = 0, storage_block_size = 0;  ///< bytes
   std::int64_t uniform_blocks = 0, storage_blocks = 0, texture_units = 0, image_units = 0;
   std::array<std::int64_t, 3> work_groups = {0, 0, 0};

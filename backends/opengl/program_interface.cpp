@@ -18,18 +18,24 @@ GLenum block_interface(ResourceKind kind) {
 std::optional<ResourceKind> texture_kind(GLint type) {
   switch (type) {
     case GL_SAMPLER_2D:
+    case GL_SAMPLER_2D_ARRAY:
     case GL_SAMPLER_3D:
     case GL_SAMPLER_2D_SHADOW:
     case GL_INT_SAMPLER_2D:
+    case GL_INT_SAMPLER_2D_ARRAY:
     case GL_INT_SAMPLER_3D:
     case GL_UNSIGNED_INT_SAMPLER_2D:
+    case GL_UNSIGNED_INT_SAMPLER_2D_ARRAY:
     case GL_UNSIGNED_INT_SAMPLER_3D:
       return ResourceKind::sampled_texture;
     case GL_IMAGE_2D:
+    case GL_IMAGE_2D_ARRAY:
     case GL_IMAGE_3D:
     case GL_INT_IMAGE_2D:
+    case GL_INT_IMAGE_2D_ARRAY:
     case GL_INT_IMAGE_3D:
     case GL_UNSIGNED_INT_IMAGE_2D:
+    case GL_UNSIGNED_INT_IMAGE_2D_ARRAY:
     case GL_UNSIGNED_INT_IMAGE_3D:
       return ResourceKind::storage_texture;
     default:

@@ -98,6 +98,10 @@ void Device::check_image(const VkImageCreateInfo& info, std::string_view texture
            "Texture \"{}\" is {}x{}x{} texels, the device takes up to {}x{}x{}", texture, info.extent.width,
            info.extent.height, info.extent.depth, limit.width, limit.height, limit.depth);
   }
+  if (info.arrayLayers > most.maxArrayLayers) {
+    refuse(ErrorCode::unsupported, "backend.limit", "Texture \"{}\" has {} layers, the device takes up to {}", texture,
+           info.arrayLayers, most.maxArrayLayers);
+  }
 }
 
 void Device::run(const std::function<void(VkCommandBuffer)>& record) {

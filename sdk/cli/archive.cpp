@@ -141,7 +141,7 @@ Status print_entry(const Context& context, const Archive& archive, Archive::Entr
     json["outputs"].push_back(
         {{"stage", to_string(output.stage)}, {"target", to_string(output.target)}, {"bytes", output.size}});
   for (const auto& [target, reason] : archive.absent(entry)) json["absent"][to_string(target)] = reason;
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  print_json(json);
   return {};
 }
 
@@ -184,8 +184,7 @@ Status run_verify(const Context& context, const std::string& file) {
   if (!archive) return tl::unexpected(archive.error());
   if (Status status = archive->verify(); !status) return status;
   if (context.json) {
-    fmt::print("{}\n",
-               nlohmann::json{{"permutations", archive->size()}, {"programs", archive->program_count()}}.dump(2));
+    print_json({{"permutations", archive->size()}, {"programs", archive->program_count()}});
   } else {
     fmt::print("{} permutations, {} programs: intact\n", archive->size(), archive->program_count());
   }

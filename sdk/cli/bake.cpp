@@ -93,7 +93,7 @@ Status run_bake(const Context& context, const BakeOptions& options) {
                               : write_map(options.output, map, values_of(**descriptor, settings->values));
   if (!written) return written;
   if (context.json) {
-    fmt::print("{}\n", json_of(map, *cost, options.output, is_picture).dump(2));
+    print_json(json_of(map, *cost, options.output, is_picture));
   } else {
     fmt::print("{}: {}x{}x{}, {} levels, {} channels, {} bytes, {:.3f} s -> {}{}\n", map.name, map.width, map.height,
                map.depth, map.levels, map.channels, texture_bytes(map), cost->seconds, options.output,

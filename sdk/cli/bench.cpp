@@ -37,15 +37,20 @@ Result<std::vector<TraceRequest>> requests_of(const Registry& registry, const Be
   return requests;
 }
 
+/// What a backend without clocks does not tell is null.
+void add_times(nlohmann::json& row, double seconds, std::size_t rays, double reference) {
+  row["median_s"] = seconds > 0 ? nlohmann::json(seconds) : nlohmann::json();
+  row["rays_per_s"] = seconds > 0 ? nlohmann::json(static_cast<double>(rays) / seconds) : nlohmann::json();
+  row["ratio"] = seconds > 0 && reference > 0 ? nlohmann::json(seconds / reference) : nlohmann::json();
+}
+
 nlohmann::json row_of(const TraceRequest& request, const TraceResult& timed, const ErrorFigures& figures,
                       double reference) {
   nlohmann::json row = to_json(figures);
   double seconds = median(timed.seconds);
   row["technique"] = request.technique;
   row["filter"] = to_string(request.filter);
-  row["median_s"] = seconds;
-  row["rays_per_s"] = seconds > 0 ? static_cast<double>(timed.hits.size()) / seconds : 0;
-  row["ratio"] = reference > 0 ? seconds / reference : 0;
+  add_times(row, seconds, timed.hits.size(), reference);
   row["steps"] = figures.mean_steps;
   row["fetches"] = figures.mean_fetches;
   return row;
@@ -80,9 +85,6 @@ Result<nlohmann::json> race(const BenchOptions& options, const HeightMap& height
   const double seconds = median(best.seconds);
   row.update({{"technique", "embree"},
               {"filter", "triangles"},
-              {"median_s", seconds},
-              {"rays_per_s", seconds > 0 ? static_cast<double>(rays.size()) / seconds : 0},
-              {"ratio", reference > 0 ? seconds / reference : 0},
               {"steps", 0.0},
               {"fetches", 0.0},
               {"map_bytes", rival->bytes},
@@ -92,17 +94,22 @@ Result<nlohmann::json> race(const BenchOptions& options, const HeightMap& height
               {"threads", options.embree_threads},
               {"method", best.method},
               {"values", nlohmann::json::object()}});
+  add_times(row, seconds, rays.size(), reference);
   for (const RivalRun& run : rival->runs) row["methods"][run.method] = median(run.seconds);
   return row;
+}
+
+std::string time_text(const nlohmann::json& value, double unit) {
+  return value.is_null() ? "-" : fmt::format("{:.2f}", value.get<double>() * unit);
 }
 
 void print_table(const nlohmann::json& rows) {
   fmt::print("{:<20} {:<9} {:>9} {:>9} {:>6} {:>8} {:>8} {:>8} {:>10} {:>10} {:>8}\n", "technique", "filter", "ms",
              "Mrays/s", "ratio", "steps", "fetches", "wrong %", "p99 texel", "p99 |dH|", "MB");
   for (const auto& r : rows) {
-    fmt::print("{:<20} {:<9} {:>9.2f} {:>9.2f} {:>6.2f} {:>8.1f} {:>8.1f} {:>8.3f} {:>10.2e} {:>10.2e} {:>8.1f}\n",
-               r["technique"].get<std::string>(), r["filter"].get<std::string>(), r["median_s"].get<double>() * 1e3,
-               r["rays_per_s"].get<double>() / 1e6, r["ratio"].get<double>(), r["steps"].get<double>(),
+    fmt::print("{:<20} {:<9} {:>9} {:>9} {:>6} {:>8.1f} {:>8.1f} {:>8.3f} {:>10.2e} {:>10.2e} {:>8.1f}\n",
+               r["technique"].get<std::string>(), r["filter"].get<std::string>(), time_text(r["median_s"], 1e3),
+               time_text(r["rays_per_s"], 1e-6), time_text(r["ratio"], 1), r["steps"].get<double>(),
                r["fetches"].get<double>(), r["wrong_percent"].get<double>(), r["uv_texels"]["p99"].get<double>(),
                r["height"]["p99"].get<double>(), r["map_bytes"].get<double>() / 1e6);
     if (!r.contains("method")) continue;
@@ -152,7 +159,7 @@ Status run_bench(const Context& context, const BenchOptions& options) {
     rows.push_back(std::move(*row));
   }
   if (context.json) {
-    fmt::print("{}\n", rows.dump(2));
+    print_json(rows);
   } else {
     print_table(rows);
     const ValueTexts own = own_values(*registry, (*backend)->info());

@@ -23,16 +23,15 @@ Result<std::filesystem::path> chosen_folder(const std::string& given) {
 
 void print(const Context& context, std::string_view word, const std::string& folder, const CacheContents& contents) {
   if (context.json) {
-    const nlohmann::json json = {{"folder", folder},
-                                 {"entries", contents.entries},
-                                 {"bytes", contents.bytes},
-                                 {"broken", contents.broken},
-                                 {"unfinished", contents.unfinished}};
-    fmt::print("{}\n", json.dump(2));
+    const nlohmann::json json = {
+        {"folder", folder},          {"entries", contents.entries},       {"bytes", contents.bytes},
+        {"broken", contents.broken}, {"unreadable", contents.unreadable}, {"unfinished", contents.unfinished}};
+    print_json(json);
     return;
   }
   fmt::print("{}: {} entries{}, {:.1f} MB", folder, contents.entries, word, static_cast<double>(contents.bytes) * 1e-6);
   if (contents.broken > 0) fmt::print("; {} more were damaged and are removed", contents.broken);
+  if (contents.unreadable > 0) fmt::print("; {} more cannot be read and are left", contents.unreadable);
   if (contents.unfinished > 0) fmt::print("; {} unfinished files{}", contents.unfinished, word);
   fmt::print("\n");
 }

@@ -83,7 +83,7 @@ void print(const Context& context, const Certificate& c, double seconds) {
                            {"checked", c.checked}, {"violations", c.violations}, {"worst", c.worst},
                            {"seconds", seconds}};
     if (c.violations > 0) json["texel"] = {{"x", c.x}, {"y", c.y}, {"level", c.level}, {"layer", c.layer}};
-    fmt::print("{}\n", json.dump(2));
+    print_json(json);
     return;
   }
   fmt::print("{}: {}{}\n{} checked, {} violations", c.map, c.promise, c.guaranteed ? "" : " (not guaranteed)",

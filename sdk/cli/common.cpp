@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "image/file.hpp"
 #include "mesh_file.hpp"
 #include "permute/archive/file.hpp"
 #include "relievo/program_cache.hpp"
@@ -29,7 +30,7 @@ void Context::report(const Error& error) {
   if (!error.file.empty()) object["file"] = error.file;
   if (error.line > 0) object["line"] = error.line;
   if (error.column > 0) object["column"] = error.column;
-  fmt::print("{}\n", nlohmann::json{{"error", object}}.dump(2));
+  print_json({{"error", object}});
 }
 
 CLI::App* add_command(CLI::App& app, Context& context, const std::string& name, const std::string& title,
@@ -202,19 +203,26 @@ Result<LoadedScene> load_scene_parts(const std::filesystem::path& path) {
   return LoadedScene{std::move(*scene), std::move(*mesh), std::move(*height)};
 }
 
+void print_json(const nlohmann::json& document) {
+  fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
 Status write_text(const std::string& path, const std::string& text) {
   if (path == "-") {
-    std::fwrite(text.data(), 1, text.size(), stdout);
+    std::fwrite(text.data(), 1, text.size(), stdout);  // main looks whether it came out
     return {};
   }
-  archive::sweep_beside(path);
+  if (is_written_in_place(path))
+    return write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "cli");
+  const std::filesystem::path target = link_target(path);
+  archive::sweep_beside(target);
   std::filesystem::path temporary;
-  const archive::File file = archive::create_beside(path, ".tmp", temporary);
+  const archive::File file = archive::create_beside(target, ".tmp", temporary);
   std::error_code error, ignored;
   if (!file || !file.write_at(0, text) || !file.settle()) {
     error.assign(errno, std::generic_category());
   } else {
-    std::filesystem::rename(temporary, path, error);
+    std::filesystem::rename(temporary, target, error);
   }
   if (!error) return {};
   if (file) std::filesystem::remove(temporary, ignored);

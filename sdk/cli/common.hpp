@@ -55,7 +55,7 @@ ValueTexts own_values(const Registry& registry, const BackendInfo& backend);
 /// "ray.storage=image, …"
 std::string to_text(const ValueTexts& values);
 
-/// Parses and opens a backend; with `oracle` allowed the pointer is null.
+/// Opens a backend by its name, with programs kept in the user's cache.
 Result<std::unique_ptr<Backend>> open(const std::string& name, bool validation);
 
 /// "a,b,c" or repeated options → names; "all" → every technique, "always" → those that claim to find the first
@@ -72,7 +72,16 @@ struct LoadedScene {
 };
 Result<LoadedScene> load_scene_parts(const std::filesystem::path& path);
 
-/// Writes a file atomically; "-" is stdout.
+/// By these, glslangValidator and glslc know what a file is.
+constexpr std::string_view stage_suffix(ShaderStage stage) {
+  constexpr std::string_view names[] = {"vert", "tesc", "tese", "geom", "frag", "comp"};
+  return names[static_cast<std::size_t>(stage)];
+}
+
+/// Prints a document on stdout; what is no UTF-8 in it, such as a file's name, with � for the bytes that are not.
+void print_json(const nlohmann::json& document);
+
+/// Writes a file atomically, a pipe or device in place; "-" is stdout.
 Status write_text(const std::string& path, const std::string& text);
 Status make_folder(const std::filesystem::path& path);
 

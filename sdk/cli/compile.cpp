@@ -2,8 +2,12 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "common.hpp"
+#include "depfile.hpp"
+#include "describe/origins.hpp"
+#include "job/program.hpp"
 #include "relievo/compile.hpp"
 
 namespace relievo::cli {
@@ -17,16 +21,17 @@ struct CompileOptions {
   unsigned jobs = 0;
 };
 
-constexpr std::string_view stage_suffix(ShaderStage stage) {
-  constexpr std::string_view names[] = {"vert", "tesc", "tese", "geom", "frag", "comp"};
-  return names[static_cast<std::size_t>(stage)];
+/// A name without an owner is the technique's, where there is but one.
+std::string qualified(const std::string& name, const std::string& only) {
+  return name.find('.') == std::string::npos && !only.empty() ? only + "." + name : name;
 }
 
-Result<std::map<std::string, BindingTime>> parse_bindings(const CompileOptions& options) {
+Result<std::map<std::string, BindingTime>> parse_bindings(const CompileOptions& options, const std::string& only) {
   std::map<std::string, BindingTime> times;
   for (const std::string& item : options.bindings) {
     std::size_t equals = item.find('=');
-    std::string name = item.substr(0, equals), time = equals == std::string::npos ? "" : item.substr(equals + 1);
+    std::string name = qualified(item.substr(0, equals), only),
+                time = equals == std::string::npos ? "" : item.substr(equals + 1);
     bool found = false;
     for (BindingTime known : {BindingTime::macro, BindingTime::specialization, BindingTime::uniform}) {
       if (time != to_string(known)) continue;
@@ -37,7 +42,8 @@ Result<std::map<std::string, BindingTime>> parse_bindings(const CompileOptions& 
       return fail(ErrorCode::usage, "compile.bind",
                   fmt::format("--bind {}: expected owner.parameter=macro, =specialization or =uniform", item));
   }
-  for (const std::string& item : options.defines) times[item.substr(0, item.find('='))] = BindingTime::macro;
+  for (const std::string& item : options.defines)
+    times[qualified(item.substr(0, item.find('=')), only)] = BindingTime::macro;
   return times;
 }
 
@@ -66,8 +72,9 @@ Result<std::vector<Target>> parse_targets(const std::vector<std::string>& names)
   return targets;
 }
 
+/// `only`: the technique, if there is but one.
 Result<Permutation> permutation_of(const Registry& registry, const CompileOptions& options,
-                                   const std::string& technique) {
+                                   const std::string& technique, const std::string& only) {
   Result<AddressMode> address = parse_address_mode(options.address);
   if (!address) return tl::unexpected(address.error());
   Result<HeightFilter> filter = parse_height_filter(options.filter);
@@ -76,15 +83,28 @@ Result<Permutation> permutation_of(const Registry& registry, const CompileOption
   if (!aov) return tl::unexpected(aov.error());
   std::vector<std::string> given = options.set;
   given.insert(given.end(), options.defines.begin(), options.defines.end());
-  Result<Settings> settings = parse_settings(registry, given, technique);
+  Result<Settings> settings = parse_settings(registry, given, only);
   if (!settings) return tl::unexpected(settings.error());
-  Result<std::map<std::string, BindingTime>> times = parse_bindings(options);
+  Result<std::map<std::string, BindingTime>> times = parse_bindings(options, only);
   if (!times) return tl::unexpected(times.error());
+  if (const auto own = settings->filters.find(technique); own != settings->filters.end()) *filter = own->second;
   Permutation permutation{options.stage, {}, *filter, *address, options.count, *aov, settings->values, *times};
   Result<const StageDescriptor*> stage = registry.stage(options.stage);
   if (!stage) return tl::unexpected(stage.error());
   for (const std::string& role : (*stage)->roles) permutation.roles[role] = technique;
   return permutation;
+}
+
+/// Of several techniques each takes what it has of the settings; a single one must have them all.
+Result<ComposedProgram> compose_with(const Registry& registry, Permutation permutation, bool is_single) {
+  if (is_single) return compose(registry, permutation);
+  std::map<std::string, BindingTime> times = std::exchange(permutation.binding_times, {});
+  const Result<ComposedProgram> composed = compose_known(registry, permutation);
+  if (!composed) return composed;
+  for (const ParameterSlot& slot : composed->parameters) {
+    if (const auto time = times.find(slot.name); time != times.end()) permutation.binding_times.insert(*time);
+  }
+  return compose_known(registry, std::move(permutation));
 }
 
 std::string spirv_bytes(const std::vector<std::uint32_t>& words) {
@@ -108,25 +128,33 @@ Status write_outputs(const CompiledProgram& program, const std::vector<Target>& 
   return folder == "-" ? Status() : write_text(fmt::format("{}/{}.json", folder, base), program.reflection);
 }
 
-Status write_depfile(const ComposedProgram& program, const std::string& base, const CompileOptions& options) {
-  std::string text = fmt::format("{}/{}.json:", options.output == "-" ? "." : options.output, base);
-  std::vector<std::string> files;
-  for (const ComposedShader& shader : program.shaders)
-    files.insert(files.end(), shader.files.begin(), shader.files.end());
-  std::sort(files.begin(), files.end());
-  files.erase(std::unique(files.begin(), files.end()), files.end());
-  for (const std::string& file : files) text += " \\\n  " + file;
-  std::string path = options.depfile.empty()
-                         ? fmt::format("{}/{}.d", options.output == "-" ? "." : options.output, base)
-                         : options.depfile;
-  return write_text(path, text + "\n");
+/// The rules of a run go to one depfile where it is named, else each technique has its own.
+Status write_depfiles(const CompileOptions& options, const std::map<std::string, std::string>& rules) {
+  const std::string folder = options.output == "-" ? "." : options.output;
+  std::string all;
+  for (const auto& [base, rule] : rules) {
+    all += rule;
+    if (!options.depfile.empty()) continue;
+    if (Status status = write_text(fmt::format("{}/{}.d", folder, base), rule); !status) return status;
+  }
+  return options.depfile.empty() ? Status() : write_text(options.depfile, all);
 }
 
+std::string depfile_rule_of(const Registry& registry, const ComposedProgram& program, const std::string& base,
+                            const CompileOptions& options) {
+  std::vector<std::string> sources;
+  for (const ComposedShader& shader : program.shaders)
+    sources.insert(sources.end(), shader.files.begin(), shader.files.end());
+  return depfile_rule(fmt::format("{}/{}.json", options.output == "-" ? "." : options.output, base),
+                      files_on_disk(registry, sources));
+}
+
+/// Adds the technique's rule to `rules`.
 Status compile_one(const Registry& registry, const CompileOptions& options, std::vector<Target> targets,
-                   const std::string& technique) {
-  Result<Permutation> permutation = permutation_of(registry, options, technique);
+                   const std::string& technique, bool is_single, std::map<std::string, std::string>& rules) {
+  Result<Permutation> permutation = permutation_of(registry, options, technique, is_single ? technique : "");
   if (!permutation) return tl::unexpected(permutation.error());
-  Result<ComposedProgram> composed = compose(registry, *permutation);
+  Result<ComposedProgram> composed = compose_with(registry, *permutation, is_single);
   if (!composed) return tl::unexpected(composed.error());
   Result<const StageDescriptor*> stage = registry.stage(options.stage);
   if (std::find(options.targets.begin(), options.targets.end(), "all") != options.targets.end())
@@ -140,8 +168,8 @@ Status compile_one(const Registry& registry, const CompileOptions& options, std:
     if (Status status = make_folder(options.output); !status) return status;
   }
   std::string base = technique.empty() ? options.stage : technique + "." + options.stage;
-  if (Status status = write_outputs(*compiled, targets, base, options.output); !status) return status;
-  return options.depend || !options.depfile.empty() ? write_depfile(*composed, base, options) : Status();
+  rules[base] = depfile_rule_of(registry, *composed, base, options);
+  return write_outputs(*compiled, targets, base, options.output);
 }
 
 Status run_compile(const Context& context, const CompileOptions& options) {
@@ -159,10 +187,12 @@ Status run_compile(const Context& context, const CompileOptions& options) {
     if (!names) return tl::unexpected(names.error());
     techniques = *names;
   }
+  std::map<std::string, std::string> rules;
   for (const std::string& technique : techniques) {
-    if (Status status = compile_one(*registry, options, *targets, technique); !status) return status;
+    Status status = compile_one(*registry, options, *targets, technique, techniques.size() == 1, rules);
+    if (!status) return tl::unexpected(name_file_on_disk(status.error(), *registry));
   }
-  return {};
+  return options.depend || !options.depfile.empty() ? write_depfiles(options, rules) : Status();
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ Status conform_to_hard_cases(const Context& context, const Registry& registry, c
   Result<HardResult> result = run_hard_cases(*input);
   if (!result) return tl::unexpected(result.error());
   if (context.json) {
-    fmt::print("{}\n", to_json(*result).dump(2));
+    print_json(to_json(*result));
   } else {
     print(*result);
   }
@@ -82,7 +82,7 @@ Status fuzz(const Context& context, const Registry& registry, const ConformOptio
   Result<FuzzResult> result = run_fuzz(input);
   if (!result) return tl::unexpected(result.error());
   if (context.json) {
-    fmt::print("{}\n", to_json(*result).dump(2));
+    print_json(to_json(*result));
   } else {
     print(*result);
   }
@@ -115,7 +115,7 @@ Status run_conform(const Context& context, const ConformOptions& options) {
   Result<Evaluation> evaluation = evaluate(*input);
   if (!evaluation) return tl::unexpected(evaluation.error());
   if (context.json) {
-    fmt::print("{}\n", to_json(*evaluation).dump(2));
+    print_json(to_json(*evaluation));
   } else {
     print(*evaluation);
   }
@@ -165,7 +165,7 @@ void add_conform(CLI::App& app, Context& context) {
       ->needs(options->fuzz);
   command->add_option("--patience", options->fuzz_input.patience, "Seconds that one job of the fuzzing may take")
       ->needs(options->fuzz)
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();
   command->add_option("--address", options->address, "Of the height files")->capture_default_str();
   command->add_option("--backends", options->backends)->delimiter(',')->capture_default_str();

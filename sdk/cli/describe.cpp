@@ -1,5 +1,6 @@
 /// relievo describe: all that a descriptor says.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common.hpp"
 #include "describe/description.hpp"
@@ -29,9 +30,16 @@ void print(const nlohmann::json& d) {
     fmt::print("{:<10} {}\n", key, text(value));
   }
   for (const auto& p : d["parameters"]) {
-    fmt::print("  {:<16} {} = {} in [{}, {}] {} ({}, {})\n", p["name"].get<std::string>(), text(p["type"]),
-               text(p["default"]), text(p["min"]), text(p["max"]), text(p["unit"]), text(p["title"]),
-               text(p["binding"]));
+    const std::string name = p["name"].get<std::string>(), note = text(p["title"]) + ", " + text(p["binding"]);
+    if (p.contains("values")) {
+      const auto values = p["values"].get<std::vector<std::string>>();
+      fmt::print("  {:<16} {} = {} ({})\n", name, fmt::join(values, " | "), values.at(p["default"].get<std::size_t>()),
+                 note);
+      continue;
+    }
+    const auto number = [&](const char* key) { return fmt::format("{}", p[key].get<double>()); };
+    fmt::print("  {:<16} {} = {} in [{}, {}]{} ({})\n", name, text(p["type"]), number("default"), number("min"),
+               number("max"), text(p["unit"]).empty() ? "" : " " + text(p["unit"]), note);
   }
 }
 
@@ -41,7 +49,7 @@ Status run_describe(const Context& context, const std::string& name) {
   Result<nlohmann::json> description = find(*registry, name);
   if (!description) return tl::unexpected(description.error());
   if (context.json) {
-    fmt::print("{}\n", description->dump(2));
+    print_json(*description);
   } else {
     print(*description);
   }

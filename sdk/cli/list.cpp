@@ -85,7 +85,7 @@ Status run_list(const Context& context, const std::string& kind) {
   if (all || kind == "targets") lists["targets"] = target_list();
   if (all || kind == "backends") lists["backends"] = backend_list();
   if (context.json) {
-    fmt::print("{}\n", lists.dump(2));
+    print_json(lists);
   } else {
     print(lists);
   }

@@ -1,4 +1,9 @@
 #include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <new>
 
 #include <fmt/format.h>
 
@@ -14,6 +19,28 @@ std::vector<std::string> long_options(int argc, char** argv) {
   }
   std::reverse(arguments.begin(), arguments.end());  // the order that CLI11's parse takes
   return arguments;
+}
+
+/// Ranges let NaN through, and some have no end.
+void refuse_endless_numbers(CLI::App& app) {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0;
+    if (!CLI::detail::lexical_cast(text, value) || std::isfinite(value)) return {};
+    return fmt::format("{} is given; a finite number is expected", text);
+  };
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    refuse_endless_numbers(*command);
+    for (CLI::Option* option : command->get_options()) {
+      if (option->get_type_name().starts_with("FLOAT")) option->check(CLI::Validator(check, "", "finite"));
+    }
+  }
+}
+
+/// Results that did not come out, on a full disk say, are no success.
+int finish(int exit_code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
+  fmt::print(stderr, "error: what was printed cannot be written: {} [cli.write]\n", std::strerror(errno));
+  return exit_code == 0 ? relievo::exit_code(relievo::ErrorCode::io) : exit_code;
 }
 
 /// A first word that is no command is answered with the nearest one.
@@ -46,16 +73,19 @@ int main(int argc, char** argv) {
     add(app, context);
   }
   add_techniques_option(app, context);
+  refuse_endless_numbers(app);
   if (relievo::Status status = check_command(app, argc, argv); !status) {
     context.report(status.error());
-    return context.exit_code;
+    return finish(context.exit_code);
   }
   try {
     app.parse(long_options(argc, argv));
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 1;
+    return finish(app.exit(error) == 0 ? 0 : 1);
+  } catch (const std::bad_alloc&) {
+    context.report({relievo::ErrorCode::io, "cli.memory", "there is not enough memory for this", "", 0, 0});
   } catch (const std::exception& error) {
     context.report({relievo::ErrorCode::io, "cli.failure", error.what(), "", 0, 0});
   }
-  return context.exit_code;
+  return finish(context.exit_code);
 }

@@ -11,26 +11,20 @@
 #include <map>
 #include <system_error>
 
+#include "image/file.hpp"
+
 namespace relievo::cli {
 
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string short_name(const fs::path& path) {
-  return path.has_filename() ? path.filename().string() : path.string();
-}
-
-tl::unexpected<Error> mesh_error(const fs::path& path, std::string id, const std::string& rest) {
-  return fail(ErrorCode::io, std::move(id), fmt::format("'{}' {}", short_name(path), rest), path.string());
-}
-
 Status check_file(const fs::path& path) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
-  if (!fs::exists(status)) return mesh_error(path, "mesh.missing", "does not exist");
-  if (fs::is_directory(status)) return mesh_error(path, "mesh.unreadable", "is a folder, not a file");
-  if (fs::is_regular_file(status) && fs::file_size(path, code) == 0) return mesh_error(path, "mesh.empty", "is empty");
+  if (!fs::exists(status)) return file_error(path, "mesh.missing", "does not exist");
+  if (fs::is_directory(status)) return file_error(path, "mesh.unreadable", "is a folder, not a file");
+  if (fs::is_regular_file(status) && fs::file_size(path, code) == 0) return file_error(path, "mesh.empty", "is empty");
   return {};
 }
 
@@ -123,10 +117,10 @@ Result<Mesh> read(const fs::path& path) {
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_SortByPType);
   if (scene == nullptr) {
-    return mesh_error(path, "mesh.unreadable", fmt::format("cannot be read as a mesh: {}", reason_of(importer)));
+    return file_error(path, "mesh.unreadable", fmt::format("cannot be read as a mesh: {}", reason_of(importer)));
   }
   if (scene->mRootNode == nullptr || scene->mNumMeshes == 0) {
-    return mesh_error(path, "mesh.empty", "has no triangle; at least one is expected");
+    return file_error(path, "mesh.empty", "has no triangle; at least one is expected");
   }
   Merger merger(*scene, short_name(path));
   merger.add_node(*scene->mRootNode, root_transform(*scene, path));
@@ -146,7 +140,7 @@ Result<Mesh> load_mesh_file(const fs::path& path) {
     }
     return mesh;
   } catch (const std::exception& exception) {
-    return mesh_error(path, "mesh.unreadable", fmt::format("cannot be read as a mesh: {}", exception.what()));
+    return file_error(path, "mesh.unreadable", fmt::format("cannot be read as a mesh: {}", exception.what()));
   }
 }
 

@@ -7,6 +7,8 @@
 #include <thread>
 
 #include "common.hpp"
+#include "depfile.hpp"
+#include "describe/origins.hpp"
 #include "permute_emit.hpp"
 #include "permute_merge.hpp"
 #include "permute_sources.hpp"
@@ -80,7 +82,9 @@ struct Project {
 
 /// The text of --costs. Shards that see different costs are no parts of one whole, so a missing file is an error.
 Result<std::string> load_costs(const std::string& path) {
-  if (path.empty() || std::ifstream(path).good()) return read_all(path);
+  std::error_code ignored;
+  const bool is_file = !std::filesystem::is_directory(path, ignored) && std::ifstream(path).good();
+  if (path.empty() || is_file) return read_all(path);
   return fail(ErrorCode::io, "permute.costs",
               fmt::format("the costs '{}' cannot be read; the .costs file of an earlier run is expected", path), path);
 }
@@ -116,7 +120,7 @@ void list_plan(const Context& context, const PermutationPlan& plan) {
     }
     list.push_back({{"key", fmt::format("{:016x}", planned.key)}, {"name", plan.name(planned)}, {"pruned", pruned}});
   }
-  if (context.json) fmt::print("{}\n", list.dump(2));
+  if (context.json) print_json(list);
 }
 
 void print_plan(const Context& context, const PermutationPlan& plan) {
@@ -132,7 +136,7 @@ void print_plan(const Context& context, const PermutationPlan& plan) {
   if (context.json) {
     const nlohmann::json json = {
         {"asked", plan.permutations.size()}, {"kept", kept}, {"outputs", outputs}, {"pruned_by", reasons}};
-    fmt::print("{}\n", json.dump(2));
+    print_json(json);
     return;
   }
   fmt::print("{} permutations asked for {} targets, {} kept for at least one; {} outputs\n", plan.permutations.size(),
@@ -169,7 +173,7 @@ void print_summary(const Context& context, const PermuteSummary& summary, const 
   if (context.json) {
     nlohmann::json json = to_json(summary);
     json["archive"] = path;
-    fmt::print("{}\n", json.dump(2));
+    print_json(json);
     return;
   }
   fmt::print("{} asked, {} pruned, {} different sources, {} programs, {} from cache, {} compiled, {} failed\n",
@@ -190,27 +194,12 @@ Result<std::unique_ptr<Cache>> open_cache_of(const PermuteArguments& arguments) 
   return open_cache(options);
 }
 
-/// As Make and Ninja read a name.
-std::string escape_name(std::string name) {
-  for (std::size_t at = 0; (at = name.find_first_of(" #$", at)) != std::string::npos; at += 2)
-    name.insert(at, name[at] == '$' ? "$" : "\\");
-  return name;
-}
-
 std::string depfile_text(const Project& project, const std::string& target, const std::vector<std::string>& sources) {
-  std::set<std::string> files = {project.manifest.file};
-  for (const std::string& source : sources) {
-    const auto origin = project.registry.origins.find(source);
-    if (origin != project.registry.origins.end()) files.insert(origin->second);
-  }
-  // Descriptors decide as well, and so do techniques that come or go.
+  std::set<std::string> files = files_on_disk(project.registry, sources);
+  files.insert(project.manifest.file);
+  // Techniques may come or go.
   for (const std::filesystem::path& folder : project.manifest.folders) files.insert(folder.generic_string());
-  for (const auto& [source, origin] : project.registry.origins) {
-    if (source.ends_with(".toml")) files.insert(origin);
-  }
-  std::string text = escape_name(target) + ":";
-  for (const std::string& file : files) text += " \\\n  " + escape_name(file);
-  return text + "\n";
+  return depfile_rule(target, files);
 }
 
 std::size_t kept_count(const PermutationPlan& plan) {
@@ -257,10 +246,8 @@ Status compile_plan(const Context& context, const PermuteArguments& arguments, c
   Result<PermuteSummary> summary = permute(project.registry, project.manifest, plan, paths.archive, options);
   progress.reset();
   if (!summary) return tl::unexpected(summary.error());
-  for (FoldedError& folded : summary->errors) {  // where the author finds it
-    const auto origin = project.registry.origins.find(folded.error.file);
-    if (origin != project.registry.origins.end()) folded.error.file = origin->second;
-  }
+  for (FoldedError& folded : summary->errors)
+    folded.error = name_file_on_disk(std::move(folded.error), project.registry);
   print_errors(*summary, kept_count(plan));
   print_summary(context, *summary, paths.archive);
   if (!summary->costs.empty()) {
@@ -276,8 +263,8 @@ Status compile_plan(const Context& context, const PermuteArguments& arguments, c
 }
 
 /// Also puts together what the parts cost and which files they read.
-Status merge_parts(const PermuteArguments& arguments, const Project& project, const PermutationPlan& plan,
-                   const Paths& paths) {
+Status merge_parts(const Context& context, const PermuteArguments& arguments, const Project& project,
+                   const PermutationPlan& plan, const Paths& paths) {
   if (Status status = merge_shards(plan, project.fingerprint, arguments.merge, paths.archive); !status) return status;
   ClosureCosts costs;
   std::set<std::string> files;
@@ -291,7 +278,11 @@ Status merge_parts(const PermuteArguments& arguments, const Project& project, co
   }
   const Result<Archive> archive = Archive::open(paths.archive);
   if (!archive) return tl::unexpected(archive.error());
-  fmt::print("{} permutations in {}\n", archive->size(), paths.archive);
+  if (context.json) {
+    print_json({{"archive", paths.archive}, {"permutations", archive->size()}});
+  } else {
+    fmt::print("{} permutations in {}\n", archive->size(), paths.archive);
+  }
   return write_stamp(paths.stamp, paths.archive, project.fingerprint, {files.begin(), files.end()});
 }
 
@@ -349,7 +340,11 @@ Status run_permute(const Context& context, const PermuteArguments& arguments) {
                         arguments.sources.empty() && arguments.emit.empty();
   const std::optional<Stamp> stamp = compiles && !arguments.force ? read_stamp(paths.stamp) : std::nullopt;
   if (stamp && is_up_to_date(*stamp, paths.archive, project->fingerprint)) {
-    fmt::print("{} is up to date\n", paths.archive);
+    if (context.json) {
+      print_json({{"archive", paths.archive}, {"up_to_date", true}});
+    } else {
+      fmt::print("{} is up to date\n", paths.archive);
+    }
     return write_depfile(arguments, *project, paths, stamp->files);
   }
   const Result<PermutationPlan> plan = plan_permutations(project->registry, project->manifest);
@@ -363,7 +358,11 @@ Status run_permute(const Context& context, const PermuteArguments& arguments) {
     if (!assignment) return tl::unexpected(assignment.error());
     const Result<std::string> text = explain(project->registry, project->manifest, *plan, *assignment);
     if (!text) return tl::unexpected(text.error());
-    fmt::print("{}\n", *text);
+    if (context.json) {
+      print_json({{"explanation", *text}});
+    } else {
+      fmt::print("{}\n", *text);
+    }
     return {};
   }
   if (!arguments.sources.empty())
@@ -374,7 +373,7 @@ Status run_permute(const Context& context, const PermuteArguments& arguments) {
   }
   if (Status status = make_folder(arguments.output); !status) return status;
   if (!arguments.emit.empty()) return emit(context, arguments, *project);
-  if (!arguments.merge.empty()) return merge_parts(arguments, *project, *plan, paths);
+  if (!arguments.merge.empty()) return merge_parts(context, arguments, *project, *plan, paths);
   return compile_plan(context, arguments, *project, *plan, *shard, paths);
 }
 

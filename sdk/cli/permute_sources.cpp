@@ -9,12 +9,6 @@ namespace relievo::cli {
 
 namespace {
 
-/// By these, glslangValidator and glslc know what a file is.
-constexpr std::string_view suffix(ShaderStage stage) {
-  constexpr std::string_view names[] = {"vert", "tesc", "tese", "geom", "frag", "comp"};
-  return names[static_cast<std::size_t>(stage)];
-}
-
 std::vector<const PlannedPermutation*> spread(const PermutationPlan& plan, std::size_t sample) {
   std::vector<const PlannedPermutation*> kept;
   for (const PlannedPermutation& planned : plan.permutations) {
@@ -38,7 +32,7 @@ Status write_sources(const Registry& registry, const Manifest& manifest, const P
     const std::string own = fmt::format("{}/{:016x}", folder, planned->key);
     if (Status status = make_folder(own); !status) return status;
     for (const ComposedShader& shader : program->shaders) {
-      const std::string path = fmt::format("{}/{}.{}", own, to_string(shader.stage), suffix(shader.stage));
+      const std::string path = fmt::format("{}/{}.{}", own, to_string(shader.stage), stage_suffix(shader.stage));
       if (Status status = write_text(path, shader.text); !status) return status;
     }
   }

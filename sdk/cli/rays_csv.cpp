@@ -21,22 +21,23 @@ std::vector<std::string_view> split(std::string_view line) {
   }
 }
 
-Result<Ray> parse_ray(const std::vector<std::string_view>& cells, const std::string& path, int line) {
+/// `row` is the whole line that the cells lie in.
+Result<Ray> parse_ray(std::string_view row, const std::vector<std::string_view>& cells, const std::string& path,
+                      int line) {
   Ray ray;
   double* fields[] = {&ray.u, &ray.v, &ray.h, &ray.du, &ray.dv, &ray.dh, &ray.t_max};
   if (cells.size() != 6 && cells.size() != 7) {
     return fail(ErrorCode::io, "rays.columns",
                 fmt::format("row has {} values; expected 6 or 7: u,v,h,du,dv,dh[,t_max]", cells.size()), path, line, 1);
   }
-  int column = 1;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     std::string cell(cells[i]);
     if (i == 6 && cell.empty()) break;
     char* end = nullptr;
     *fields[i] = std::strtod(cell.c_str(), &end);
+    const int column = static_cast<int>(cells[i].data() - row.data()) + 1;
     if (cell.empty() || *end != '\0')
       return fail(ErrorCode::io, "rays.number", fmt::format("'{}' is not a number", cell), path, line, column);
-    column += static_cast<int>(cell.size()) + 1;
   }
   return ray;
 }
@@ -57,7 +58,7 @@ Result<std::vector<Ray>> parse_rays(std::istream& stream, const std::string& pat
       continue;
     }
     if (blank) continue;
-    Result<Ray> ray = parse_ray(cells, path, number);
+    Result<Ray> ray = parse_ray(line, cells, path, number);
     if (!ray) return tl::unexpected(ray.error());
     rays.push_back(*ray);
   }

@@ -71,12 +71,11 @@ Status run_render(const Context& context, const RenderOptions& options) {
   if (!result) return tl::unexpected(result.error());
   if (Status status = write_image(*result, *aov, options.output); !status) return status;
   if (context.json) {
-    fmt::print("{}\n", nlohmann::json{{"output", options.output},
-                                      {"width", result->image.width},
-                                      {"height", result->image.height},
-                                      {"seconds", result->seconds},
-                                      {"degenerate_triangles", result->degenerate_triangles}}
-                           .dump(2));
+    print_json({{"output", options.output},
+                {"width", result->image.width},
+                {"height", result->image.height},
+                {"seconds", result->seconds},
+                {"degenerate_triangles", result->degenerate_triangles}});
   } else {
     fmt::print("{}x{}, {:.1f} ms -> {}\n", result->image.width, result->image.height, result->seconds * 1e3,
                options.output);

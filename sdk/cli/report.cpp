@@ -214,7 +214,7 @@ Status run_report(const Context& context, const ReportOptions& options) {
   nlohmann::json json = json_of(*report);
   if (Status status = write_files(*report, json, folder); !status) return status;
   if (context.json) {
-    fmt::print("{}\n", json.dump(2));
+    print_json(json);
   } else {
     print(*report, folder);
   }

@@ -63,8 +63,7 @@ Status run_trace(const Context& context, const TraceOptions& options) {
   if (Status status = write_text(options.output, format_hits(*hits, digits)); !status) return status;
   if (options.output == "-") return {};
   if (context.json) {
-    fmt::print("{}\n",
-               nlohmann::json{{"rays", hits->size()}, {"summary", summary(*hits)}, {"output", options.output}}.dump(2));
+    print_json({{"rays", hits->size()}, {"summary", summary(*hits)}, {"output", options.output}});
   } else {
     fmt::print("{} rays: {} -> {}\n", hits->size(), summary(*hits), options.output);
   }

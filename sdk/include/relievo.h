@@ -140,13 +140,13 @@ relievo_status relievo_registry_parameter(const relievo_registry* registry, reli
 typedef struct relievo_program relievo_program;
 
 typedef struct relievo_role {
-  const char* role;      /* "view", "shadow" */
+  const char* role;      /* "view" in our stages */
   const char* technique; /* "relief" */
 } relievo_role;
 
 typedef struct relievo_value {
   const char* parameter; /* "relief.linear_steps" */
-  double value;
+  double value;          /* of an axis: the index of its value (names: relievo_description) */
 } relievo_value;
 
 typedef struct relievo_binding_choice {
@@ -264,8 +264,8 @@ typedef struct relievo_permute_desc {
 typedef struct relievo_summary relievo_summary;
 
 /* Compiles and writes the archive. `summary` is made whenever the run came to its end: also with the status
- * RELIEVO_ERROR_COMPILE, when shaders failed; `error` then is the most frequent one. Thread-safe, but two runs must not
- * write one archive at once. */
+ * RELIEVO_ERROR_COMPILE, when shaders failed; `error` then is the most frequent one. Thread-safe; of runs that
+ * write one archive at once, the last one's stays, whole. */
 relievo_status relievo_manifest_permute(const relievo_manifest* manifest, const relievo_permute_desc* desc,
                                         relievo_summary** summary, relievo_error* error);
 void relievo_summary_free(relievo_summary* summary);

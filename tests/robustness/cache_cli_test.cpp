@@ -26,11 +26,8 @@ class CacheCli : public ::testing::Test {
     return nlohmann::json::parse(result.out);
   }
   nlohmann::json contents(int entries, int broken, int unfinished) const {
-    return {{"folder", folder()},
-            {"entries", entries},
-            {"bytes", entries * 1056},
-            {"broken", broken},
-            {"unfinished", unfinished}};
+    return {{"folder", folder()}, {"entries", entries}, {"bytes", entries * 1056},
+            {"broken", broken},   {"unreadable", 0},    {"unfinished", unfinished}};
   }
   TemporaryFolder folder_;
 };

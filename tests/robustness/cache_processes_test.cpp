@@ -158,9 +158,14 @@ void store_in_place(Cache& cache, const fs::path& folder, std::uint64_t number) 
 }
 
 TEST(CacheProcesses, WriterInPlaceIsCaughtByTheSameKills) {
-  const Killings killings = kill_writers(20, &store_in_place);
-  EXPECT_EQ(killings.answers.wrong, 0);
-  EXPECT_GT(killings.broken, 0u);
+  // Whether a kill hits while the file is half written is a matter of luck.
+  std::uint64_t broken = 0;
+  for (int round = 0; round < 20 && broken == 0; ++round) {
+    const Killings killings = kill_writers(20, &store_in_place);
+    EXPECT_EQ(killings.answers.wrong, 0);
+    broken = killings.broken;
+  }
+  EXPECT_GT(broken, 0u);
 }
 
 TEST(CacheProcesses, BoundIsKeptUnderConcurrentWriters) {

@@ -1,7 +1,9 @@
 /// The program under bad input: one clear sentence, the right exit code, and nothing half-written left behind.
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "relievo/image.hpp"
 #include "support/child.hpp"
@@ -161,6 +163,7 @@ TEST_F(Cli, RaysThatAreNone) {
   refused("x,y,z,du,dv,dh\n0,0,1,0,0,-1\n", {"bad.csv:1", "header"});
   refused("u,v,h,du,dv,dh\n0,0,1,0,0\n", {"bad.csv:2", "5 values"});
   refused("u,v,h,du,dv,dh\n0,0,1,0,0,-1\n0,0,1,0,0,down\n", {"bad.csv:3:11", "'down'"});
+  refused("u,v,h,du,dv,dh\n0.1,   0.2,   oops,1,1,1\n", {"bad.csv:2:15", "'oops'"});
   refused("u,v,h,du,dv,dh\n", {"bad.csv", "no rays"});
   refused("", {"bad.csv"});
   expect_refused(trace(path("height.pfm"), path("missing.csv")), 1, {"missing.csv"});
@@ -221,7 +224,10 @@ TEST_F(Cli, ScenesAndMeshesThatAreNone) {
 
 TEST_F(Cli, ATechniqueThatDoesNotCompileIsNamedByFileAndLine) {
   write_technique("", good_glsl + "float mine_bad() { return missing_name; }\n");
-  expect_refused(compile_user(), 2, {"mine.glsl:4", "missing_name"});
+  expect_refused(compile_user(), 2, {path("techniques/mine/mine.glsl") + ":4", "missing_name"});
+  std::vector<std::string> words = trace(path("height.pfm"), path("rays.csv"), {"-I", path("techniques")});
+  words[2] = "mine";
+  expect_refused(words, 2, {path("techniques/mine/mine.glsl") + ":4", "missing_name"});
   write_technique("", "float mine_other() { return 1.0; }\n");
   expect_refused(compile_user(), 2, {"mine_trace"});
   fs::create_directories(folder_ / "techniques/mine");
@@ -284,6 +290,81 @@ TEST_F(Cli, ErrorsAreJsonWhenAskedFor) {
   EXPECT_EQ(json["error"]["exit_code"], 1);
   EXPECT_EQ(json["error"]["id"].get<std::string>().substr(0, 6), "image.");
   EXPECT_NE(json["error"]["message"].get<std::string>().find("missing.png"), std::string::npos);
+}
+
+/// Ranges let NaN pass, for it is neither below nor above.
+TEST_F(Cli, NumbersThatAreNotFiniteAreRefused) {
+  const auto h = path("height.pfm");
+  for (const std::string number : {"nan", "-nan", "inf"}) {
+    expect_refused({"certify", "max_pyramid", "--height", h, "--tolerance", number}, 1, {"--tolerance", number});
+    expect_refused({"bench", "--techniques", "relief", "--height", h, "--angle", number}, 1, {"--angle"});
+    expect_refused({"bench", "--techniques", "relief", "--height", h, "--scale", number}, 1, {"--scale"});
+  }
+  expect_refused({"conform", "--fuzz", "64", "--patience", "1e300"}, 1, {"--patience", "1e300"});
+  expect_refused({"conform", "--techniques", "relief", "--height", h + ":0.1-9"}, 1, {"0.1-9", "FILE:scale"});
+}
+
+TEST_F(Cli, PipesAndLinksAreWrittenAndNotReplaced) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  std::string arrived;
+  std::thread reader([&] { arrived = TemporaryFolder::read(path("pipe")); });
+  std::vector<std::string> words = trace(path("height.pfm"), path("rays.csv"));
+  words.back() = path("pipe");
+  EXPECT_EQ(run_relievo(words).exit_code, 0);
+  reader.join();
+  EXPECT_TRUE(fs::is_fifo(path("pipe")));
+  EXPECT_EQ(arrived.substr(0, 7), "status,");
+
+  folder_.write("target.csv", "old");
+  fs::create_symlink("target.csv", path("link.csv"));
+  words.back() = path("link.csv");
+  EXPECT_EQ(run_relievo(words).exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(path("link.csv")));
+  EXPECT_EQ(TemporaryFolder::read(path("target.csv")), arrived);
+}
+
+const std::string program = RELIEVO_BINARY_DIR "/bin/relievo";
+
+TEST_F(Cli, WhatCannotBePrintedIsNoSuccess) {
+  const ChildResult full = run_child("/bin/sh", {"-c", program + " list --json > /dev/full"});
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_NE(full.err.find("cli.write"), std::string::npos) << full.err;
+}
+
+TEST_F(Cli, WithoutMemoryThereIsASentence) {
+  const ChildResult starved =
+      run_child("/bin/sh", {"-c", "ulimit -v 4000000; exec " + program +
+                                      " trace --technique relief --height /dev/zero --rays " + path("rays.csv")});
+  EXPECT_EQ(starved.signal, 0);
+  EXPECT_EQ(starved.exit_code, 1);
+  EXPECT_NE(starved.err.find("image.memory"), std::string::npos) << starved.err;
+}
+
+TEST_F(Cli, JsonStandsNamesThatAreNoText) {
+  const ChildResult result = run_relievo(trace("b\xff.png", path("rays.csv"), {"--json"}));
+  const auto json = nlohmann::json::parse(result.out, nullptr, false);
+  ASSERT_TRUE(json.contains("error")) << result.out << result.err;
+  EXPECT_EQ(json["error"]["id"], "image.missing");
+}
+
+TEST_F(Cli, CompileGivesEachTechniqueWhatItHas) {
+  const auto compiled = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "compile");
+    words.insert(words.end(), {"--target", "glsl-450", "-o", path("out"), "-MF", path("out.d")});
+    const ChildResult result = run_relievo(words);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return TemporaryFolder::read(path("out/relief.surface.frag.glsl-450.glsl"));
+  };
+  write_technique("", good_glsl);
+  const std::string both = compiled({"relief", "mine", "-I", path("techniques"), "-D", "relief.linear_steps=5"});
+  const std::string depfile = TemporaryFolder::read(path("out.d"));
+  EXPECT_NE(depfile.find("relief.surface.json:"), std::string::npos) << depfile;
+  EXPECT_NE(depfile.find("mine.surface.json:"), std::string::npos) << depfile;
+  EXPECT_NE(depfile.find(path("techniques/mine/mine.glsl")), std::string::npos) << depfile;
+  EXPECT_EQ(depfile.find("shaders/lib"), std::string::npos) << "no such file is there to be looked for: " << depfile;
+  EXPECT_EQ(both, compiled({"relief", "-D", "linear_steps=5"}));
+  EXPECT_NE(both, compiled({"relief"}));
+  EXPECT_EQ(compiled({"relief", "--set", "relief.filter=hardware"}), compiled({"relief", "--filter", "hardware"}));
 }
 
 /// What expect_refused looks for does fail on a run that succeeds or leaves files.

@@ -140,6 +140,18 @@ TEST(HeightFileFaults, MissingEmptyAndFolder) {
   expect_error(folder.write("text.png", "hello, this is no picture"), "image.format", "no known format");
 }
 
+TEST(HeightFileFaults, ColoursBeyondABmpsPaletteAreBlack) {
+  const TemporaryFolder folder;
+  const ByteString info = little(40, 4) + little(4, 4) + little(1, 4) + little(1, 2) + little(8, 2) + little(0, 4) +
+                          little(4, 4) + ByteString(8, '\0') + little(2, 4) + little(0, 4);
+  const ByteString palette = ByteString(4, '\0') + ByteString("\xff\xff\xff\0", 4);
+  const ByteString bmp =
+      "BM" + little(66, 4) + ByteString(4, '\0') + little(62, 4) + info + palette + "\x01\x64\x02\xff";
+  const auto map = load_height_map(folder.write("short.bmp", bmp));
+  ASSERT_TRUE(map) << format(map.error());
+  EXPECT_EQ(map->texels, (std::vector<float>{1, 0, 0, 0}));
+}
+
 TEST(HeightFileFaults, HugeHeadersAreRejectedBeforeAllocation) {
   const TemporaryFolder folder;
   const ByteString info =

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "relievo/compile.hpp"
+#include "relievo/maps.hpp"
 #include "support/pipeline.hpp"
 
 namespace relievo::test {
@@ -145,6 +146,19 @@ TEST(ComposeAxes, BindOnlyTheMapsOfTheChosenValue) {
   const auto compiled = compile(*by_height, all_targets());
   ASSERT_TRUE(compiled) << format(compiled.error());
   for (const BindingSlot& slot : compiled->bindings) EXPECT_NE(slot.name, "relievo_normal_map");
+}
+
+/// A map may have an axis that needs another map, though none of ours has.
+TEST(RequiredMaps, FollowTheAxesOfMapsToo) {
+  Registry registry = *load_registry();
+  Parameter axis;
+  axis.name = "kind";
+  axis.choices = {"plain", "fancy"};
+  axis.maps = {{}, {"min_max_pyramid"}};
+  registry.maps.at("max_pyramid").parameters.push_back(axis);
+  const auto maps = required_maps(registry, "ray", "exact");
+  ASSERT_TRUE(maps);
+  EXPECT_EQ(std::count(maps->begin(), maps->end(), "min_max_pyramid"), 1);
 }
 
 TEST(ComposeAxes, LeaveOutTheCodeOfOtherValues) {

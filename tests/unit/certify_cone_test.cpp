@@ -52,6 +52,17 @@ TEST(CertifyCone, EveryConeIsTheWidestThatHoldsNoOtherTexel) {
   }
 }
 
+TEST(CertifyCone, AToleranceThatIsNoNumberIsRefused) {
+  const HeightMap map = smooth_noise_map(8, 8);
+  CertifyOptions options;
+  for (const double tolerance : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    options.tolerance = tolerance;
+    const auto certificate = certify(map, baked(map, "cone", {}), options);
+    ASSERT_FALSE(certificate);
+    EXPECT_EQ(certificate.error().id, "certify.tolerance");
+  }
+}
+
 TEST(CertifyCone, BackendsBakeTheSameCones) {
   const HeightMap map = smooth_noise_map(33, 20);
   EXPECT_EQ(baked(map, "cone", {}, "vulkan").texels, baked(map, "cone", {}, "opengl").texels);

@@ -187,6 +187,18 @@ TEST(ComposeParameters, AllBindingTimesGiveTheSameHits) {
   EXPECT_NE(backend("vulkan").execute(*job)->read_backs.at(0), results[0]) << "the value does nothing";
 }
 
+TEST(MakeTraceJob, NamesTheMapThatIsMissing) {
+  const Ray ray{0.5, 0.5, 1, 0, 0, -1};
+  const TraceRequest request = request_of("exact", {});
+  const auto without_height = make_trace_job(registry(), {}, {&ray, 1}, {&request, 1}, "spirv");
+  ASSERT_FALSE(without_height);
+  EXPECT_EQ(without_height.error().id, "maps.missing");
+  const auto unbaked = make_trace_job(registry(), map_set(HeightMap{1, 1, {0.5f}}), {&ray, 1}, {&request, 1}, "spirv");
+  ASSERT_FALSE(unbaked);
+  EXPECT_EQ(unbaked.error().id, "maps.missing");
+  EXPECT_NE(unbaked.error().message.find("'max_pyramid'"), std::string::npos) << unbaked.error().message;
+}
+
 TEST(ComposeParameters, AnUnknownNameIsAnsweredWithTheNearest) {
   Permutation permutation = ray_of("relief");
   permutation.values["relief.linear_stepz"] = 3;

@@ -313,6 +313,9 @@ TEST(ParseJob, YieldsOnlyValidJobsFromFlippedBytes) {
 TEST(ParseJob, RejectsDeepNesting) {
   EXPECT_FALSE(parse_job(std::vector<std::uint8_t>(10'000'000, 0x81)));
   EXPECT_FALSE(parse_job(std::vector<std::uint8_t>(10'000'000, 0x9f)));
+  EXPECT_FALSE(parse_job(std::vector<std::uint8_t>(10'000'000, 0x5f)));
+  EXPECT_FALSE(parse_job(std::vector<std::uint8_t>(10'000'000, 0x7f)));
+  EXPECT_FALSE(parse_job(std::vector<std::uint8_t>(10'000'000, 0xc0)));
 }
 
 TEST(ParseJob, RejectsLengthsBeyondMemory) {

@@ -190,6 +190,9 @@ TEST_F(MapFileTest, DescriptionsThatAreNoneAreRefused) {
     EXPECT_TRUE(refused(bad.dump())) << key << " of another type";
   }
   for (const auto& [key, value] : std::map<std::string, nlohmann::json>{{"width", 0},
+                                                                        {"levels", 4294967301},  // 5 in 32 bits
+                                                                        {"channels", 1e300},
+                                                                        {"bits", 16.5},
                                                                         {"height", 1 << 20},
                                                                         {"layers", -1},
                                                                         {"levels", 40},

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <spirv_cross/spirv.hpp>
 #include <sstream>
+#include <thread>
 
 #include "compile/front_end.hpp"
 #include "permute/cost.hpp"
@@ -55,6 +56,16 @@ std::string glsl(const Archive& archive, const Assignment& assignment) {
   const auto text = archive.output(*entry, ShaderStage::fragment, *parse_target("glsl-450"));
   EXPECT_TRUE(text) << (text ? "" : format(text.error()));
   return text ? std::string(*text) : std::string();
+}
+
+TEST(Permute, RunsAtOnceMayWriteOneArchive) {
+  const TemporaryFolder folder;
+  std::vector<std::thread> runs;
+  for (int i = 0; i < 3; ++i) runs.emplace_back([&] { EXPECT_TRUE(run(registry(), small, folder / "small.rla")); });
+  for (std::thread& thread : runs) thread.join();
+  ASSERT_TRUE(run(registry(), small, folder / "alone.rla"));
+  EXPECT_EQ(read(folder / "small.rla"), read(folder / "alone.rla"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2) << "something is left behind";
 }
 
 TEST(Permute, CompilesEveryProgramOnceAndKeepsTheRestAsAliases) {

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 
 #include "evaluation/evaluation.hpp"
 
@@ -12,6 +14,28 @@ std::size_t steps_of(const EvaluationInput& input, std::size_t backends) {
   for (const RayCase& c : input.ray_cases) angles += c.angles.size();
   for (const auto& [name, stage] : input.registry->stages) drawing += stage.mesh != "none";
   return backends * (2 * angles + input.scenes.size() * (drawing + 1));
+}
+
+/// FILE or FILE:scale; what follows the last colon is a scale if it is made of what numbers are made of.
+Result<std::string> split_scale(const std::string& item, double& scale) {
+  const std::size_t colon = item.rfind(':');
+  if (colon == std::string::npos || colon + 1 == item.size() ||
+      item.find_first_not_of("0123456789.eE+-", colon + 1) != std::string::npos)
+    return item;
+  const char* const last = item.data() + item.size();
+  const auto [end, error] = std::from_chars(item.data() + colon + 1, last, scale);
+  if (error == std::errc() && end == last && scale > 0 && std::isfinite(scale)) return item.substr(0, colon);
+  return fail(ErrorCode::usage, "cli.scale",
+              fmt::format("--height {}: '{}' is no scale; expected FILE or FILE:scale with a positive number", item,
+                          item.substr(colon + 1)));
+}
+
+/// Rows and pictures are told apart by their map's name.
+std::string unlike_others(const std::string& stem, const std::vector<RayCase>& others) {
+  std::string name = stem;
+  const auto is_taken = [&](const RayCase& other) { return other.name == name; };
+  for (int i = 2; std::any_of(others.begin(), others.end(), is_taken); ++i) name = fmt::format("{}-{}", stem, i);
+  return name;
 }
 
 }  // namespace
@@ -71,16 +95,11 @@ Result<EvaluationInput> make_input(const Registry& registry, const std::vector<s
   }
   for (const std::string& item : heights) {
     RayCase ray_case;
-    std::size_t colon = item.rfind(':');
-    std::string path = item;
-    if (colon != std::string::npos && item.find_first_not_of("0123456789.eE+-", colon + 1) == std::string::npos &&
-        colon + 1 < item.size()) {
-      path = item.substr(0, colon);
-      ray_case.scale = std::strtod(item.c_str() + colon + 1, nullptr);
-    }
-    Result<HeightMap> height = load_height(path, address);
+    const Result<std::string> path = split_scale(item, ray_case.scale);
+    if (!path) return tl::unexpected(path.error());
+    Result<HeightMap> height = load_height(*path, address);
     if (!height) return tl::unexpected(height.error());
-    ray_case.name = std::filesystem::path(path).stem().string();
+    ray_case.name = unlike_others(std::filesystem::path(*path).stem().string(), input.ray_cases);
     ray_case.height = std::move(*height);
     input.ray_cases.push_back(std::move(ray_case));
   }

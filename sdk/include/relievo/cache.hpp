@@ -79,6 +79,7 @@ std::unique_ptr<Cache> make_memory_cache(std::uint64_t max_bytes);
 struct CacheContents {
   std::uint64_t entries = 0, bytes = 0;
   std::uint64_t broken = 0;      ///< counted by `verify_cache`
+  std::uint64_t unreadable = 0;  ///< likewise: no permission, say; left as they are
   std::uint64_t unfinished = 0;  ///< files that writers left behind when they were stopped
 };
 

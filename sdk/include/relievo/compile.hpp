@@ -55,7 +55,7 @@ struct CompileOptions {
 };
 
 /// Compiles a program for all `targets`; SPIR-V is always made. Errors: "compile.glsl" with the author's file and line,
-/// "capability.*", "compile.spirv-invalid", "compile.emit", "compile.binding-collision".
+/// "capability.*", "lint.*" and the other "compile.*" of docs/targets.md.
 /// Thread-safe: calls from several threads are independent.
 Result<CompiledProgram> compile(const ComposedProgram& program, std::span<const Target> targets,
                                 const CompileOptions& options = {}, std::string_view fallback_stage = {});

@@ -22,7 +22,8 @@ enum class BindingTime { macro, specialization, uniform };
 std::string_view to_string(BindingTime time);
 
 /// Shader-model features a descriptor can require.
-/// dynamic_loops, explicit_lod, texture_3d, gather, geometry, tessellation, compute, vertex_texture, depth_write
+/// dynamic_loops, explicit_lod, texture_3d, gather, geometry, tessellation, compute, vertex_texture, depth_write,
+/// extended_images
 using FeatureSet = std::set<std::string>;
 const FeatureSet& known_features();
 

@@ -1,4 +1,4 @@
-/// GPU work as data (design.md §2): the SDK makes Jobs, a backend or an engine's renderer executes them.
+/// GPU work as data: the SDK makes Jobs, a backend or an engine's renderer executes them.
 /// Every function here is thread-safe.
 #pragma once
 

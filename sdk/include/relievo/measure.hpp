@@ -1,4 +1,4 @@
-/// Error figures of design.md §5: a technique's hits against the oracle's, and its pictures against the oracle's.
+/// Error figures (docs/conventions.md): a technique's hits against the oracle's, and its pictures against the oracle's.
 /// Every function here is thread-safe.
 #pragma once
 

@@ -1,4 +1,4 @@
-/// Exact first hits against the bilinear surface, in double precision (design.md §5): the third witness.
+/// Exact first hits against the bilinear surface, in double precision (docs/conventions.md): the third witness.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +50,7 @@ struct OracleOptions {
 /// Every const function is thread-safe, as is `to_string`.
 class Oracle {
  public:
-  /// Keeps a reference-free copy of what it needs; O(W·H) set-up.
+  /// Copies what it needs: the map may be freed afterwards. O(W·H) set-up.
   explicit Oracle(const HeightMap& map, OracleOptions options = {});
   ~Oracle();
   Oracle(Oracle&&) noexcept;

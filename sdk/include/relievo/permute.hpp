@@ -1,6 +1,6 @@
 /// Many permutations at once: axes, pruning, compiling each different program once, archives (docs/permutations.md).
-/// Every function and const member function here is thread-safe; runs of `permute` may share a cache, but two must not
-/// write one archive at once.
+/// Every function and const member function here is thread-safe; runs of `permute` may share a cache, and write one
+/// archive: it is whole at any time, and in the end the last one's.
 #pragma once
 
 #include <cstdint>

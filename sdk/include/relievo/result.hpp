@@ -44,7 +44,7 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string id, std::string me
   return tl::unexpected<Error>(Error{code, std::move(id), std::move(message), std::move(file), line, column});
 }
 
-/// Returns the process exit code of design.md §7 for an error: 1 usage or I/O, 2 compile, 3 unsupported, 4 mismatch.
+/// Returns the process exit code for an error: 1 usage or I/O, 2 compile, 3 unsupported, 4 mismatch.
 int exit_code(ErrorCode code);
 
 /// Formats as gcc does: `file:line:column: error: message [id]`; parts that are unknown are left out.

@@ -11,11 +11,6 @@ namespace relievo {
 
 namespace {
 
-template <class T>
-void add_once(std::vector<T>& list, T value) {
-  if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
-}
-
 /// Numbers that modules may ask for by name; defined for every shader, in one place.
 std::string axis_macros(HeightFilter filter, AddressMode address, bool count, Aov aov) {
   std::string text = "#version 450\n#extension GL_GOOGLE_cpp_style_line_directive : require\n";

@@ -8,11 +8,6 @@ namespace relievo {
 
 namespace {
 
-template <class T>
-void add_once(std::vector<T>& list, T value) {
-  if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
-}
-
 Status add_role(const Registry& registry, const Permutation& permutation, const std::string& role, Parts& parts) {
   auto bound = permutation.roles.find(role);
   if (bound == permutation.roles.end()) {

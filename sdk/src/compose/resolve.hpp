@@ -1,14 +1,21 @@
 /// What one permutation is made of, after all names are resolved.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "compose/parameters.hpp"
 #include "relievo/compose.hpp"
 
 namespace relievo {
+
+template <class T>
+void add_once(std::vector<T>& list, const std::type_identity_t<T>& value) {
+  if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
+}
 
 struct Parts {
   const StageDescriptor* stage = nullptr;

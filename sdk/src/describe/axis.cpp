@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "describe/descriptor_fields.hpp"
 #include "describe/rules.hpp"
 
 namespace relievo {
@@ -67,7 +68,7 @@ void read_axis_rules(TomlReader& table, const std::string& owner, Parameter& axi
 }
 
 void read_bindings(TomlReader& table, Parameter& axis) {
-  const std::vector<std::string> known = {"macro", "specialization", "uniform"};
+  const std::vector<std::string> known(binding_names.begin(), binding_names.end());
   for (const std::string& name : table.choices("bindings", known, "describe.range")) {
     axis.bindings.push_back(static_cast<BindingTime>(index_of(known, name)));
   }

@@ -12,7 +12,6 @@
 namespace relievo {
 namespace {
 
-constexpr std::array<std::string_view, 3> binding_names = {"macro", "specialization", "uniform"};
 constexpr std::array<std::string_view, 2> type_names = {"float", "int"};
 
 void check_range(TomlReader& table, const Parameter& parameter) {

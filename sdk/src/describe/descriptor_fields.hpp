@@ -1,6 +1,7 @@
 /// What the three kinds of descriptor have in common.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,10 @@ namespace relievo {
 
 /// The newest schema that this version reads.
 inline constexpr int descriptor_schema = 1;
+
+/// The words for the values of BindingTime and FirstHit, in their order.
+inline constexpr std::array<std::string_view, 3> binding_names = {"macro", "specialization", "uniform"};
+inline constexpr std::array<std::string_view, 3> first_hit_names = {"never", "if_steps_under_texel", "always"};
 
 /// Rejects a newer schema before anything else: it may well have keys unknown here.
 void check_schema(TomlReader& descriptor);

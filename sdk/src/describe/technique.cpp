@@ -9,7 +9,6 @@ namespace {
 
 constexpr std::array<std::string_view, 6> class_names = {"non_iterative", "unsafe",   "quasi_safe",
                                                          "safe",          "combined", "reference"};
-constexpr std::array<std::string_view, 3> first_hit_names = {"never", "if_steps_under_texel", "always"};
 
 void read_technique(TomlReader& reader, TechniqueDescriptor& technique) {
   reader.allow_keys({"schema", "name", "title", "source", "summary", "class", "first_hit", "module", "maps", "features",

@@ -50,6 +50,9 @@ Status check_jpeg(const ImageSource& source);
 /// Run-length BMPs, which stb does not read: rewritten as the same BMP without compression.
 bool is_run_length_bmp(Bytes bytes);
 Result<std::vector<std::uint8_t>> expand_bmp(const ImageSource& source);
+/// The same BMP with every colour that an index can name, black where the file has none: stb 2.27 reads memory there
+/// that it never wrote.
+std::vector<std::uint8_t> with_whole_palette(Bytes bytes);
 
 bool is_gzip(Bytes bytes);
 /// Unpacks a gzip file. Errors: "image.truncated", "image.corrupt", and "image.size" beyond what an image may need.

@@ -108,4 +108,21 @@ Result<std::vector<std::uint8_t>> expand_bmp(const ImageSource& source) {
   return expanded;
 }
 
+std::vector<std::uint8_t> with_whole_palette(Bytes bytes) {
+  std::vector<std::uint8_t> whole(bytes.begin(), bytes.end());
+  if (bytes.size() < header_size) return whole;
+  const std::size_t info_size = little_endian(bytes, 14), offset = little_endian(bytes, 10);
+  const bool is_core = info_size == 12;  // of OS/2
+  const std::size_t bits = bytes[is_core ? 24 : 28], entry_size = is_core ? 3 : 4, start = 14 + info_size;
+  if (bits > 8 || start > offset || offset > bytes.size()) return whole;
+  const std::size_t entries = (offset - start) / entry_size, needed = std::size_t{1} << bits;
+  if (entries == 0 || entries >= needed) return whole;
+  const std::size_t pixels = start + needed * entry_size;
+  whole.resize(start + entries * entry_size);
+  whole.resize(pixels);  // black
+  whole.insert(whole.end(), bytes.begin() + static_cast<std::ptrdiff_t>(offset), bytes.end());
+  put_little_endian(whole, 10, static_cast<std::uint32_t>(pixels));
+  return whole;
+}
+
 }  // namespace relievo

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <system_error>
 
 namespace relievo {
@@ -38,6 +40,21 @@ std::string write_bytes(const fs::path& path, const char* mode, std::span<const 
   const bool written = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
   const bool closed = std::fclose(file.release()) == 0;
   return written && closed ? std::string() : std::strerror(errno);
+}
+
+/// No image of largest_height_map_extent has more; a device may never end.
+constexpr std::size_t largest_file = std::size_t{8} << 30;
+
+/// To the end of the file, or a little beyond `largest_file`.
+std::vector<std::uint8_t> read_all(std::FILE* file, std::uintmax_t expected) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(static_cast<std::size_t>(std::min<std::uintmax_t>(expected, largest_file)));
+  std::uint8_t block[65536];
+  while (const std::size_t count = std::fread(block, 1, sizeof block, file)) {
+    bytes.insert(bytes.end(), block, block + count);
+    if (bytes.size() > largest_file) break;
+  }
+  return bytes;
 }
 
 std::string replace_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
@@ -73,11 +90,14 @@ Result<std::vector<std::uint8_t>> read_file(const fs::path& path, const std::str
   if (!file) return file_error(path, kind + ".unreadable", fmt::format("cannot be opened: {}", std::strerror(errno)));
 
   std::vector<std::uint8_t> bytes;
-  const std::uintmax_t size = fs::is_regular_file(status) ? fs::file_size(path, code) : 0;
-  if (!code) bytes.reserve(static_cast<std::size_t>(size));
-  std::uint8_t block[65536];
-  while (const std::size_t count = std::fread(block, 1, sizeof block, file.get())) {
-    bytes.insert(bytes.end(), block, block + count);
+  try {
+    bytes = read_all(file.get(), fs::is_regular_file(status) ? fs::file_size(path, code) : 0);
+  } catch (const std::bad_alloc&) {
+    return file_error(path, kind + ".memory", "cannot be read: it needs more memory than there is");
+  }
+  if (bytes.size() > largest_file) {
+    return file_error(path, kind + ".size",
+                      fmt::format("cannot be read: it has more than {} bytes", std::uintmax_t{largest_file}));
   }
   if (std::ferror(file.get())) {
     return file_error(path, kind + ".unreadable", fmt::format("cannot be read: {}", std::strerror(errno)));
@@ -86,15 +106,26 @@ Result<std::vector<std::uint8_t>> read_file(const fs::path& path, const std::str
   return bytes;
 }
 
+bool is_written_in_place(const fs::path& path) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+fs::path link_target(const fs::path& path) {
+  std::error_code code;
+  const fs::path target = fs::is_symlink(path, code) ? fs::canonical(path, code) : path;
+  return code || target.empty() ? path : target;
+}
+
 Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes, const std::string& kind) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
-  const bool in_place = fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
   std::string reason;
   if (fs::is_directory(status)) {
     reason = "it is a folder";
   } else {
-    reason = in_place ? write_bytes(path, "wb", bytes) : replace_file(path, bytes);
+    reason = is_written_in_place(path) ? write_bytes(path, "wb", bytes) : replace_file(link_target(path), bytes);
   }
   if (!reason.empty()) return file_error(path, kind + ".write", fmt::format("cannot be written: {}", reason));
   return {};

@@ -63,9 +63,10 @@ Result<DecodedImage> decode_image(const ImageSource& source) {
   if (is_run_length_bmp(bytes)) {
     const auto expanded = expand_bmp(source);
     if (!expanded) return tl::unexpected(expanded.error());
-    return decode_stb({source.path, *expanded});
+    return decode_stb({source.path, with_whole_palette(*expanded)});
   }
-  if (starts_with(bytes, "BM") || starts_with(bytes, "#?") || is_named_tga(source.path)) {
+  if (starts_with(bytes, "BM")) return decode_stb({source.path, with_whole_palette(bytes)});
+  if (starts_with(bytes, "#?") || is_named_tga(source.path)) {
     return decode_stb(source);
   }
   return file_error(source.path, "image.format",

@@ -4,15 +4,9 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "job/vectors.hpp"
+
 namespace relievo {
-
-namespace {
-
-glm::vec3 to_vec3(const std::array<float, 3>& a) {
-  return {a[0], a[1], a[2]};
-}
-
-}  // namespace
 
 glm::mat4 view_projection(const Scene& scene) {
   const SceneCamera& camera = scene.camera;

@@ -3,15 +3,12 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
+
+#include "job/vectors.hpp"
 
 namespace relievo {
 
 namespace {
-
-glm::vec3 to_vec3(const std::array<float, 3>& a) {
-  return {a[0], a[1], a[2]};
-}
 
 /// Every triangle with three vertices of its own.
 Mesh explode(const Mesh& mesh) {

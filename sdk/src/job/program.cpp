@@ -1,6 +1,9 @@
 #include "job/program.hpp"
 
+#include <fmt/format.h>
+
 #include "compose/resolve.hpp"
+#include "describe/origins.hpp"
 #include "job/program_cache.hpp"
 
 #include <algorithm>
@@ -26,13 +29,19 @@ Result<PreparedProgram> prepare_composed(ComposedProgram composed, std::string_v
 
 namespace {
 
-/// The maps that a descriptor needs, whatever its axes say.
+/// The maps that axes need, whatever their values.
+void add_maps_of_axes(const std::vector<Parameter>& parameters, std::vector<std::string>& maps) {
+  for (const Parameter& axis : parameters) {
+    for (const auto& needed : axis.maps) {
+      for (const std::string& map : needed) add_once(maps, map);
+    }
+  }
+}
+
 template <class Descriptor>
 void add_all_maps(const Descriptor& descriptor, std::vector<std::string>& maps) {
-  maps.insert(maps.end(), descriptor.maps.begin(), descriptor.maps.end());
-  for (const Parameter& axis : descriptor.parameters) {
-    for (const auto& needed : axis.maps) maps.insert(maps.end(), needed.begin(), needed.end());
-  }
+  for (const std::string& map : descriptor.maps) add_once(maps, map);
+  add_maps_of_axes(descriptor.parameters, maps);
 }
 
 /// Drops the values of parameters that the permutation does not have, given those of its axes that `kept` has.
@@ -62,8 +71,10 @@ Result<ComposedProgram> compose_known(const Registry& registry, Permutation perm
 
 Result<PreparedProgram> prepare(const Registry& registry, Permutation permutation, std::string_view shader_target) {
   Result<ComposedProgram> composed = compose_known(registry, std::move(permutation));
-  if (!composed) return tl::unexpected(composed.error());
-  return prepare_composed(std::move(*composed), shader_target);
+  if (!composed) return tl::unexpected(name_file_on_disk(composed.error(), registry));
+  Result<PreparedProgram> prepared = prepare_composed(std::move(*composed), shader_target);
+  if (!prepared) return tl::unexpected(name_file_on_disk(prepared.error(), registry));
+  return prepared;
 }
 
 Result<std::vector<std::string>> required_maps(const Registry& registry, std::string_view stage_name,
@@ -72,10 +83,16 @@ Result<std::vector<std::string>> required_maps(const Registry& registry, std::st
   if (!stage) return tl::unexpected(stage.error());
   std::vector<std::string> maps;
   add_all_maps(**stage, maps);
-  if (technique_name.empty()) return maps;
-  Result<const TechniqueDescriptor*> technique = registry.technique(technique_name);
-  if (!technique) return tl::unexpected(technique.error());
-  add_all_maps(**technique, maps);
+  if (!technique_name.empty()) {
+    Result<const TechniqueDescriptor*> technique = registry.technique(technique_name);
+    if (!technique) return tl::unexpected(technique.error());
+    add_all_maps(**technique, maps);
+  }
+  // Maps have axes that need maps too, so the list grows while it is read.
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const auto map = registry.maps.find(maps[i]);
+    if (map != registry.maps.end()) add_maps_of_axes(map->second.parameters, maps);
+  }
   return maps;
 }
 
@@ -115,15 +132,28 @@ std::string texture_name(const ComposedProgram& composed, const std::string& map
 
 }  // namespace
 
-void bind_maps(const ComposedProgram& composed, const MapSet& maps, Job& job, std::vector<ResourceBinding>& resources) {
+Status check_height(const MapSet& maps) {
+  if (maps.contains("height")) return {};
+  return fail(ErrorCode::usage, "maps.missing", "the set of maps lacks the height map; expected it there (map_set)");
+}
+
+Status bind_maps(const ComposedProgram& composed, const MapSet& maps, Job& job,
+                 std::vector<ResourceBinding>& resources) {
   for (const MapSlot& slot : composed.maps) {
+    const auto map = maps.find(slot.map);
+    if (map == maps.end()) {
+      return fail(ErrorCode::usage, "maps.missing",
+                  fmt::format("'{}' reads the map '{}', which the set of maps lacks; expected it baked (bake_map)",
+                              composed.key, slot.map));
+    }
     const std::string name = texture_name(composed, slot.map);
     auto known =
         std::find_if(job.textures.begin(), job.textures.end(), [&](const Texture& t) { return t.name == name; });
     int index = static_cast<int>(known - job.textures.begin());
-    if (known == job.textures.end()) job.textures.push_back(texture_of(composed, maps.at(slot.map)));
+    if (known == job.textures.end()) job.textures.push_back(texture_of(composed, map->second));
     resources.push_back({slot.set, slot.binding, index});
   }
+  return {};
 }
 
 void bind_parameters(const ComposedProgram& composed, Job& job, std::vector<ResourceBinding>& resources) {

@@ -20,8 +20,12 @@ Buffer make_buffer(std::string name, const void* data, std::size_t size);
 /// Adds a buffer to the job and binds it; returns its index.
 int bind_buffer(int set, int binding, Buffer buffer, Job& job, std::vector<ResourceBinding>& resources);
 
-/// Binds the program's maps; a map that the job has already (by name) is shared.
-void bind_maps(const ComposedProgram& composed, const MapSet& maps, Job& job, std::vector<ResourceBinding>& resources);
+/// Every set of maps has the height map. Errors: "maps.missing".
+Status check_height(const MapSet& maps);
+
+/// Binds the program's maps; a map that the job has already (by name) is shared. Errors: "maps.missing".
+Status bind_maps(const ComposedProgram& composed, const MapSet& maps, Job& job,
+                 std::vector<ResourceBinding>& resources);
 
 /// Binds the Parameters block (set 0, binding 0) if the program has one.
 void bind_parameters(const ComposedProgram& composed, Job& job, std::vector<ResourceBinding>& resources);

@@ -10,6 +10,7 @@
 #include "job/mesh_buffers.hpp"
 #include "job/oracle_picture.hpp"
 #include "job/program.hpp"
+#include "job/vectors.hpp"
 #include "relievo/render.hpp"
 
 namespace relievo {
@@ -27,10 +28,6 @@ struct SceneBlock {
   std::array<glm::vec4, most_lights> light_direction, light_color;
 };
 static_assert(sizeof(SceneBlock) == 64 + 5 * 16 + 2 * 64);
-
-glm::vec3 to_vec3(const std::array<float, 3>& a) {
-  return {a[0], a[1], a[2]};
-}
 
 SceneBlock make_scene_block(const Scene& scene) {
   SceneBlock block{};
@@ -135,7 +132,8 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, std::s
   Job job;
   job.name = "render " + prepared->composed.key;
   std::vector<ResourceBinding> resources;
-  bind_maps(prepared->composed, maps, job, resources);
+  if (Status status = bind_maps(prepared->composed, maps, job, resources); !status)
+    return tl::unexpected(status.error());
   bind_parameters(prepared->composed, job, resources);
   Result<std::vector<std::byte>> block = scene_block(scene);
   if (!block) return tl::unexpected(block.error());

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -299,26 +300,61 @@ class Reader {
   std::string path_, problem_;
 };
 
-/// Stops at nesting that no job has: the CBOR parser is recursive, and hostile bytes could exhaust the stack.
-class DepthGuard : public nlohmann::json_sax<Json> {
+/// Whether the bytes are one whole CBOR item (RFC 8949 §3) as jobs have it: nested no deeper than they are, every
+/// length given. The parser is recursive, over strings without a length too, and hostile bytes could exhaust the stack.
+class CborOutline {
  public:
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return ++depth_ <= max_depth; }
-  bool key(string_t&) override { return true; }
-  bool end_object() override { return --depth_ >= 0; }
-  bool start_array(std::size_t) override { return ++depth_ <= max_depth; }
-  bool end_array() override { return --depth_ >= 0; }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
+  explicit CborOutline(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  bool is_plain() {
+    std::vector<std::uint64_t> open = {1};  // items still to come, by depth
+    while (!open.empty()) {
+      if (open.back() == 0) {
+        open.pop_back();
+        continue;
+      }
+      --open.back();
+      std::uint64_t items = 0;
+      if (!read_item(items)) return false;
+      if (items > 0) open.push_back(items);
+      if (open.size() > max_depth) return false;
+    }
+    return at_ == bytes_.size();
+  }
 
  private:
-  static constexpr int max_depth = 16;
-  int depth_ = 0;
+  static constexpr std::size_t max_depth = 16;
+
+  std::size_t left() const { return bytes_.size() - at_; }
+
+  /// Passes over an item's head, and over a string; `items`: what it holds.
+  bool read_item(std::uint64_t& items) {
+    enum Major { byte_string = 2, text_string = 3, array = 4, map = 5, tag = 6 };
+    if (left() == 0) return false;
+    const int major = bytes_[at_] >> 5, size = bytes_[at_] & 31;
+    ++at_;
+    std::uint64_t argument = static_cast<std::uint64_t>(size);
+    if (size >= 28 || major == tag || !(size < 24 || read_argument(std::size_t{1} << (size - 24), argument)))
+      return false;
+    if (major == array) items = argument;
+    if (major == map) items = argument <= left() ? 2 * argument : argument;
+    if (items > left()) return false;
+    if (major != byte_string && major != text_string) return true;
+    if (argument > left()) return false;
+    at_ += static_cast<std::size_t>(argument);
+    return true;
+  }
+
+  bool read_argument(std::size_t size, std::uint64_t& argument) {
+    if (size > left()) return false;
+    argument = 0;
+    for (std::size_t i = 0; i < size; ++i) argument = argument << 8 | bytes_[at_ + i];
+    at_ += size;
+    return true;
+  }
+
+  std::span<const std::uint8_t> bytes_;
+  std::size_t at_ = 0;
 };
 
 tl::unexpected<Error> parse_failure(const std::string& reason) {
@@ -326,8 +362,7 @@ tl::unexpected<Error> parse_failure(const std::string& reason) {
 }
 
 Json parse_cbor(const std::vector<std::uint8_t>& bytes) {
-  DepthGuard guard;
-  if (!Json::sax_parse(bytes, &guard, Json::input_format_t::cbor)) return Json(Json::value_t::discarded);
+  if (!CborOutline(bytes).is_plain()) return Json(Json::value_t::discarded);
   return Json::from_cbor(bytes, true, false);
 }
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "describe/origins.hpp"
 #include "job/program.hpp"
 #include "relievo/trace.hpp"
 
@@ -170,12 +171,13 @@ Result<RequestDispatch> make_dispatch(const Registry& registry, const MapSet& ma
                                       std::string_view shader_target, SharedPrograms& programs, Job& job) {
   Result<ComposedProgram> composed =
       compose_known(registry, permutation_of(request, maps.find("height")->second.address));
-  if (!composed) return tl::unexpected(composed.error());
+  if (!composed) return tl::unexpected(name_file_on_disk(composed.error(), registry));
   Result<int> program = programs.index_of(*composed, shader_target, job);
-  if (!program) return tl::unexpected(program.error());
+  if (!program) return tl::unexpected(name_file_on_disk(program.error(), registry));
   RequestDispatch made{{}, storage_of(*composed), request.count_cost};
   made.dispatch.program = *program;
-  bind_maps(*composed, maps, job, made.dispatch.resources);
+  if (Status status = bind_maps(*composed, maps, job, made.dispatch.resources); !status)
+    return tl::unexpected(status.error());
   bind_parameters(*composed, job, made.dispatch.resources);
   return made;
 }
@@ -251,6 +253,7 @@ class RaySet {
 Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const std::vector<Ray>> sets,
                            std::span<const TraceRequest> requests, std::string_view shader_target, int repeats,
                            bool read_hits) {
+  if (Status status = check_height(maps); !status) return tl::unexpected(status.error());
   Job job;
   job.name = "trace";
   std::vector<RaySet> ray_sets;

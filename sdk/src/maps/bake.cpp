@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "describe/origins.hpp"
 #include "job/program.hpp"
 #include "maps/bake_plan.hpp"
 #include "maps/check_finite.hpp"
@@ -72,9 +73,9 @@ Result<PhasePrograms> prepare_phases(const Registry& registry, const MapDescript
   PhasePrograms programs;
   for (int phase = 0; phase < static_cast<int>(map.passes.size()); ++phase) {
     Result<ComposedProgram> composed = compose_bake(registry, map.name, address, values, {phase, buffers});
-    if (!composed) return tl::unexpected(composed.error());
+    if (!composed) return tl::unexpected(name_file_on_disk(composed.error(), registry));
     Result<PreparedProgram> prepared = prepare_composed(std::move(*composed), shader_target);
-    if (!prepared) return tl::unexpected(prepared.error());
+    if (!prepared) return tl::unexpected(name_file_on_disk(prepared.error(), registry));
     programs.push_back(std::move(*prepared));
   }
   return programs;
@@ -89,13 +90,14 @@ std::vector<int> phases_of(const MapDescriptor& descriptor) {
 }
 
 /// One dispatch a level and pass: a command sees what earlier ones wrote.
-Job bake_job(const PhasePrograms& programs, const MapDescriptor& descriptor, const MapSet& maps, const MapData& output,
-             const BakePlan& plan, const BakeSlab& slab) {
+Result<Job> bake_job(const PhasePrograms& programs, const MapDescriptor& descriptor, const MapSet& maps,
+                     const MapData& output, const BakePlan& plan, const BakeSlab& slab) {
   Job job;
   job.name = "bake " + descriptor.name;
   for (const PreparedProgram& prepared : programs) job.programs.push_back(prepared.program);
   std::vector<ResourceBinding> shared;
-  bind_maps(programs.front().composed, maps, job, shared);
+  if (Status status = bind_maps(programs.front().composed, maps, job, shared); !status)
+    return tl::unexpected(status.error());
   bind_parameters(programs.front().composed, job, shared);
   bind_texels(plan, slab, job, shared);
   const std::vector<int> phases = phases_of(descriptor);
@@ -162,7 +164,9 @@ Status bake_texels(Backend& backend, const PhasePrograms& programs, const MapDes
     const auto add = [&](std::size_t, std::span<const std::byte> bytes) {
       if (added) added = texels.add(bytes);
     };
-    Result<JobResult> result = backend.execute_once(bake_job(programs, descriptor, maps, output, plan, slab), add);
+    Result<Job> job = bake_job(programs, descriptor, maps, output, plan, slab);
+    if (!job) return tl::unexpected(job.error());
+    Result<JobResult> result = backend.execute_once(std::move(*job), add);
     if (!result) return tl::unexpected(result.error());
     append_messages(*result, messages);
     if (!added) return added;
@@ -178,6 +182,7 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
   Result<const MapDescriptor*> found = registry.map(name);
   if (!found) return tl::unexpected(found.error());
   const MapDescriptor& descriptor = **found;
+  if (Status status = check_height(maps); !status) return status;
   for (const std::string& input : descriptor.inputs) {
     if (Status status = bake_map(backend, registry, input, maps, values, messages); !status) return status;
   }
@@ -185,7 +190,7 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
   const std::map<std::string, double> own = values_for_bake(registry, descriptor, values);
   // Composing checks the values, of which the shape depends.
   if (auto checked = compose_bake(registry, name, height.address, own); !checked)
-    return tl::unexpected(checked.error());
+    return tl::unexpected(name_file_on_disk(checked.error(), registry));
   MapData output = map_shape(descriptor, height.width, height.height, height.address, own);
   const int bits = std::exchange(output.bits, 32);
   const Result<BakePlan> plan = plan_bake(output, descriptor, height, backend.info());

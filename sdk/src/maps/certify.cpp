@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 
 #include "maps/certifiers.hpp"
 #include "maps/check_finite.hpp"
@@ -15,6 +16,10 @@ Result<Certificate> certify(const HeightMap& height_map, const MapData& map, con
   if (found == known.end()) {
     return fail(ErrorCode::usage, "certify.unknown",
                 fmt::format("map '{}' has no certifier; expected {}", map.name, fmt::join(certified_maps(), ", ")));
+  }
+  if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance)) {
+    return fail(ErrorCode::usage, "certify.tolerance",
+                fmt::format("the tolerance is {}; expected a finite number that is not negative", options.tolerance));
   }
   Certificate certificate;
   certificate.map = map.name;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "image/file.hpp"
 #include "maps/map_layout.hpp"
@@ -122,17 +124,26 @@ bool is_uint_of(const std::string& word) {
   return word == "uint";
 }
 
+/// Throws for what is no whole number, or none that an int holds.
+int whole_number(const json& text, const char* key) {
+  const json& value = text.at(key);
+  if (!value.is_number_integer() || !std::in_range<int>(value.get<std::int64_t>()) ||
+      (value.is_number_unsigned() && !std::in_range<int>(value.get<std::uint64_t>())))
+    throw std::runtime_error(fmt::format("\"{}\" is {}; a whole number is expected", key, value.dump()));
+  return value.get<int>();
+}
+
 /// The map of a description, without its texels. Throws what the JSON library throws.
 MapFile parse_description(const json& text) {
   MapFile file;
   MapData& map = file.map;
   map.name = text.at("map").get<std::string>();
-  map.width = text.at("width").get<int>();
-  map.height = text.at("height").get<int>();
-  map.depth = text.at("layers").get<int>();
-  map.levels = text.at("levels").get<int>();
-  map.channels = text.at("channels").get<int>();
-  map.bits = text.at("bits").get<int>();
+  map.width = whole_number(text, "width");
+  map.height = whole_number(text, "height");
+  map.depth = whole_number(text, "layers");
+  map.levels = whole_number(text, "levels");
+  map.channels = whole_number(text, "channels");
+  map.bits = whole_number(text, "bits");
   map.is_uint = is_uint_of(text.value("texels", "unorm"));
   map.dimension = dimension_of(text.at("dimension").get<std::string>());
   const Result<AddressMode> address = parse_address_mode(text.at("address").get<std::string>());
@@ -151,9 +162,9 @@ Result<MapFile> read_description(const path& file) {
   }
   try {
     const json text = json::parse(bytes->begin(), bytes->end());
-    if (text.at("schema").get<int>() != schema)
+    if (whole_number(text, "schema") != schema)
       return description_error(file,
-                               fmt::format("has the schema {}; expected {}", text.at("schema").get<int>(), schema));
+                               fmt::format("has the schema {}; expected {}", whole_number(text, "schema"), schema));
     MapFile result = parse_description(text);
     if (is_plausible(result.map)) return result;
     return description_error(file, fmt::format("describes {}, which no map has", shape_text(result.map)));

@@ -13,9 +13,6 @@ namespace relievo {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> binding_names = {"macro", "specialization", "uniform"};
-constexpr std::array<std::string_view, 3> first_hit_names = {"never", "if_steps_under_texel", "always"};
-
 /// `address = ["repeat", "clamp"]` is short for a table with `values` alone.
 TomlValue long_form(const TomlEntry& axis) {
   if (axis.value.kind == TomlValue::Kind::table) return axis.value;

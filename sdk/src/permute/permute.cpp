@@ -93,7 +93,6 @@ class Run {
   template <class Work>
   void with_builders(std::size_t count, const Work& work) {
     constexpr std::size_t chunk = 64;
-    std::vector<std::unique_ptr<PermutationBuilder>> builders(threads_);
     std::atomic<std::size_t> next = 0;
     run_parallel(threads_, threads_, [&](std::size_t thread) {
       PermutationBuilder builder(registry_, axes_);

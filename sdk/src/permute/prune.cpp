@@ -4,15 +4,17 @@
 
 #include <algorithm>
 
+#include "describe/source_path.hpp"
+
 namespace relievo {
 
 namespace {
 
-/// The file as seen from the manifest: archives hold the reasons, and are the same wherever the project lies.
+/// The manifest without its folders; a descriptor's file is a path of the source tree. Archives hold the reasons, and
+/// are the same wherever the project lies.
 std::string with_place(const Rule& rule, const Manifest& manifest) {
-  const std::filesystem::path folder = std::filesystem::path(manifest.file).parent_path();
-  const std::string seen = std::filesystem::path(rule.file).lexically_relative(folder).generic_string();
-  return fmt::format("{} ({}:{})", to_string(rule), seen.empty() ? rule.file : seen, rule.line);
+  const std::string file = rule.file == manifest.file ? file_name_of(rule.file) : rule.file;
+  return fmt::format("{} ({}:{})", to_string(rule), file, rule.line);
 }
 
 /// What the capability table asks about a program: its shaders' stages and its features.

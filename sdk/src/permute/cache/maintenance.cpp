@@ -48,6 +48,8 @@ Result<CacheContents> verify_cache(const std::filesystem::path& folder) {
     if (state == State::sound) {
       ++contents.entries;
       contents.bytes += file.bytes;
+    } else if (state == State::unreadable) {
+      ++contents.unreadable;
     } else if (state != State::absent) {
       ++contents.broken;
     }

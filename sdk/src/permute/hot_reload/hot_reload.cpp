@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <new>
 #include <thread>
 
 #include "permute/hot_reload/recompile.hpp"
@@ -72,9 +73,12 @@ class HotReloader::State {
   std::size_t poll() {
     bool is_free = false;
     if (!polling_.compare_exchange_strong(is_free, true)) return 0;
+    struct Release {
+      std::atomic<bool>& flag;
+      ~Release() { flag = false; }
+    } release{polling_};  // whatever look() throws
     const std::size_t reloaded = look();
     is_waiting_ = watch_.is_waiting();
-    polling_ = false;
     return reloaded;
   }
 
@@ -83,7 +87,10 @@ class HotReloader::State {
     std::unique_lock lock(mutex_);
     while (!stopping_) {
       lock.unlock();
-      poll();
+      try {
+        poll();
+      } catch (const std::bad_alloc&) {  // nobody is there to tell; the next look may have the memory
+      }
       const auto pause = is_waiting_ ? std::min(options_.interval, options_.settle) : options_.interval;
       lock.lock();
       wake_.wait_for(lock, pause, [this] { return stopping_ || has_new_; });

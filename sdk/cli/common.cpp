@@ -90,10 +90,20 @@ Result<double> parse_setting(const Parameter& parameter, const std::string& key,
 
 }  // namespace
 
+Result<const Parameter*> find_parameter(const Registry& registry, const std::string& key, const std::string& text) {
+  const std::map<std::string, const Parameter*> known = known_parameters(registry);
+  if (const auto parameter = known.find(key); parameter != known.end()) return parameter->second;
+  std::vector<std::string> names;
+  for (const auto& [name, ignored] : known) names.push_back(name);
+  const std::string nearest = nearest_name(key, names);
+  return fail(ErrorCode::usage, "cli.set",
+              fmt::format("{}: '{}' is no parameter{}", text, key,
+                          nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+}
+
 Result<Settings> parse_settings(const Registry& registry, const std::vector<std::string>& given,
                                 const std::string& only) {
   Settings settings;
-  const std::map<std::string, const Parameter*> known = known_parameters(registry);
   for (const std::string& item : given) {
     std::size_t equals = item.find('=');
     if (equals == std::string::npos)
@@ -107,16 +117,9 @@ Result<Settings> parse_settings(const Registry& registry, const std::vector<std:
       settings.filters[owner] = *filter;
       continue;
     }
-    const auto parameter = known.find(key);
-    if (parameter == known.end()) {
-      std::vector<std::string> names;
-      for (const auto& [name, ignored] : known) names.push_back(name);
-      std::string nearest = nearest_name(key, names);
-      return fail(ErrorCode::usage, "cli.set",
-                  fmt::format("--set {}: '{}' is no parameter{}", item, key,
-                              nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
-    }
-    Result<double> value = parse_setting(*parameter->second, key, text);
+    const Result<const Parameter*> parameter = find_parameter(registry, key, "--set " + item);
+    if (!parameter) return tl::unexpected(parameter.error());
+    Result<double> value = parse_setting(**parameter, key, text);
     if (!value) return tl::unexpected(value.error());
     settings.values[key] = *value;
   }

@@ -44,6 +44,10 @@ struct Settings {
 Result<Settings> parse_settings(const Registry& registry, const std::vector<std::string>& given,
                                 const std::string& only);
 
+/// The parameter "owner.name" that `text`, the option as it was given, asks for. Errors: "cli.set" with the nearest
+/// known name.
+Result<const Parameter*> find_parameter(const Registry& registry, const std::string& key, const std::string& text);
+
 /// Parameters by name, with their values as --set takes them.
 using ValueTexts = std::map<std::string, std::string>;
 

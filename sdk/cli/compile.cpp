@@ -26,7 +26,8 @@ std::string qualified(const std::string& name, const std::string& only) {
   return name.find('.') == std::string::npos && !only.empty() ? only + "." + name : name;
 }
 
-Result<std::map<std::string, BindingTime>> parse_bindings(const CompileOptions& options, const std::string& only) {
+Result<std::map<std::string, BindingTime>> parse_bindings(const Registry& registry, const CompileOptions& options,
+                                                          const std::string& only) {
   std::map<std::string, BindingTime> times;
   for (const std::string& item : options.bindings) {
     std::size_t equals = item.find('=');
@@ -42,8 +43,15 @@ Result<std::map<std::string, BindingTime>> parse_bindings(const CompileOptions& 
       return fail(ErrorCode::usage, "compile.bind",
                   fmt::format("--bind {}: expected owner.parameter=macro, =specialization or =uniform", item));
   }
-  for (const std::string& item : options.defines)
-    times[qualified(item.substr(0, item.find('=')), only)] = BindingTime::macro;
+  for (const std::string& item : options.defines) {
+    const std::string name = qualified(item.substr(0, item.find('=')), only);
+    if (!name.ends_with(".filter")) times[name] = BindingTime::macro;  // a filter is a macro anyway
+  }
+  for (const auto& [name, time] : times) {
+    const Result<const Parameter*> parameter =
+        find_parameter(registry, name, fmt::format("--bind {}={}", name, to_string(time)));
+    if (!parameter) return tl::unexpected(parameter.error());
+  }
   return times;
 }
 
@@ -85,7 +93,7 @@ Result<Permutation> permutation_of(const Registry& registry, const CompileOption
   given.insert(given.end(), options.defines.begin(), options.defines.end());
   Result<Settings> settings = parse_settings(registry, given, only);
   if (!settings) return tl::unexpected(settings.error());
-  Result<std::map<std::string, BindingTime>> times = parse_bindings(options, only);
+  Result<std::map<std::string, BindingTime>> times = parse_bindings(registry, options, only);
   if (!times) return tl::unexpected(times.error());
   if (const auto own = settings->filters.find(technique); own != settings->filters.end()) *filter = own->second;
   Permutation permutation{options.stage, {}, *filter, *address, options.count, *aov, settings->values, *times};

@@ -10,6 +10,9 @@ struct Interval {
 // Longest way in texture widths that a search covers when neither lid nor base nor t_max ends the ray.
 const float RELIEVO_MAX_TRAVEL = 1024.0;
 
+// Quotients of one value differ by less, relative to it.
+const float RELIEVO_SAME_TIME = 2.4e-7;
+
 // t where a coordinate that changes comes to [0, 1].
 float relievo_side(float origin, float direction) {
   precise float side = ((direction < 0.0 ? 1.0 : 0.0) - origin) / direction;
@@ -49,7 +52,12 @@ bool relievo_interval(Ray ray, out Interval interval) {
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
   relievo_clip_axis(ray.origin.x, ray.direction.x, interval);
   relievo_clip_axis(ray.origin.y, ray.direction.y, interval);
-  if (interval.enter > interval.exit) return false;
+  if (interval.enter > interval.exit) {
+    // Near a corner of the domain two t may be one, rounded twice: an exact walk finds out whether it is met.
+    precise float latest = interval.exit * (1.0 + RELIEVO_SAME_TIME);
+    if (interval.end_status != RELIEVO_OUTSIDE || interval.enter > latest) return false;
+    interval.exit = interval.enter;
+  }
 #endif
   if (fall < 0.0) {
     // A ray that enters a clip map's domain below the base meets its side there.

@@ -94,7 +94,7 @@ bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk)
   bool at_lid = relievo_enters_at_lid(ray, interval);
   bvec2 at_side = relievo_enters_at_side(ray, interval);
   precise float to_lid = ((1.0 - ray.origin.z) - fall.x) - fall_error.x;
-  precise vec2 to_side = ((mix(vec2(0.0), walk.extent, lessThan(way, vec2(0.0))) - cell) - within) - error;
+  precise vec2 to_side = ((mix(vec2(0.0), walk.extent, lessThan(way, vec2(0.0))) - start) - move) - error;
   float lid = at_lid ? to_lid / ray.direction.z : -RELIEVO_WALK_NEVER;
   float side = max(at_side.x ? to_side.x / way.x : -RELIEVO_WALK_NEVER, at_side.y ? to_side.y / way.y : -RELIEVO_WALK_NEVER);
   float rest = at_lid || any(at_side) ? max(lid, side) : 0.0;
@@ -128,13 +128,23 @@ bool relievo_walk_start(Ray ray, Interval interval, ivec2 extent, out Walk walk)
   walk.behind_at_zero = mix(vec2(1.0), vec2(0.0), greaterThanEqual(slope, vec2(0.0)));
   precise vec2 pace = 1.0 / max(abs(slope), vec2(1.0 / RELIEVO_WALK_NEVER));
   walk.pace = pace;
-#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
-  precise vec2 from_first = (walk.base_cell + 0.5) + fraction;
-  precise vec2 to_last = (walk.extent - 0.5 - walk.base_cell) - fraction;
-  bvec2 is_within = greaterThanEqual(min(from_first, to_last), vec2(0.0));
-  walk.starts_within = (at_side.x || is_within.x) && (at_side.y || is_within.y);
-#else
   walk.starts_within = true;
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
+  // How far it is to the sides that the ray leaves by. The others, by which it came, decided where it starts.
+  // Corners want it exact where it is almost 0: Knuth's sum of two.
+  precise vec2 place = start + move;
+  precise vec2 of_start = place - move;
+  precise vec2 lost = (start - of_start) + (move - (place - of_start));
+  precise vec2 from_first = place + (lost + (error + rest * way));
+  precise vec2 to_last = (walk.extent - place) - (lost + (error + rest * way));
+  vec2 to_leave = mix(to_last, from_first, lessThan(slope, vec2(0.0)));
+  if (slope.x == 0.0) to_leave.x = RELIEVO_WALK_NEVER;
+  if (slope.y == 0.0) to_leave.y = RELIEVO_WALK_NEVER;
+  walk.starts_within = interval.enter == 0.0 || min(to_leave.x, to_leave.y) >= 0.0;
+  if (interval.end_status == RELIEVO_OUTSIDE) {
+    precise vec2 leave = max(to_leave, vec2(0.0)) / max(abs(slope), vec2(1.0 / RELIEVO_WALK_NEVER));
+    walk.end = min(min(leave.x, leave.y), RELIEVO_WALK_NEVER);
+  }
 #endif
   vec2 reach = max(abs(start), abs(interval.enter * way));
   return max(reach.x, reach.y) < RELIEVO_WALK_FAR && speed < RELIEVO_WALK_FAST;

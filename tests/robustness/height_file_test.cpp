@@ -150,6 +150,14 @@ TEST(HeightFileFaults, ColoursBeyondABmpsPaletteAreBlack) {
   const auto map = load_height_map(folder.write("short.bmp", bmp));
   ASSERT_TRUE(map) << format(map.error());
   EXPECT_EQ(map->texels, (std::vector<float>{1, 0, 0, 0}));
+  // Of OS/2, whose palette stb takes for four colours shorter than it is.
+  const ByteString core = little(12, 4) + little(4, 2) + little(1, 2) + little(1, 2) + little(8, 2);
+  const ByteString colours = ByteString(3 * 255, '\0') + "\xff\xff\xff";
+  const ByteString whole =
+      "BM" + little(798, 4) + ByteString(4, '\0') + little(26 + 768, 4) + core + colours + "\xff\xfe\x01\xff";
+  const auto white = load_height_map(folder.write("core.bmp", whole));
+  ASSERT_TRUE(white) << format(white.error());
+  EXPECT_EQ(white->texels, (std::vector<float>{1, 0, 0, 1}));
 }
 
 TEST(HeightFileFaults, HugeHeadersAreRejectedBeforeAllocation) {

@@ -19,11 +19,13 @@ std::size_t steps_of(const EvaluationInput& input, std::size_t backends) {
 /// FILE or FILE:scale; what follows the last colon is a scale if it is made of what numbers are made of.
 Result<std::string> split_scale(const std::string& item, double& scale) {
   const std::size_t colon = item.rfind(':');
-  if (colon == std::string::npos || colon + 1 == item.size() ||
+  std::error_code ignored;
+  if (std::filesystem::exists(item, ignored) || colon == std::string::npos || colon + 1 == item.size() ||
       item.find_first_not_of("0123456789.eE+-", colon + 1) != std::string::npos)
     return item;
   const char* const last = item.data() + item.size();
-  const auto [end, error] = std::from_chars(item.data() + colon + 1, last, scale);
+  const char* const first = item.data() + colon + 1;
+  const auto [end, error] = std::from_chars(*first == '+' ? first + 1 : first, last, scale);
   if (error == std::errc() && end == last && scale > 0 && std::isfinite(scale)) return item.substr(0, colon);
   return fail(ErrorCode::usage, "cli.scale",
               fmt::format("--height {}: '{}' is no scale; expected FILE or FILE:scale with a positive number", item,

@@ -225,12 +225,25 @@ Ray distant_side_ray(Source& s) {
   return ray;
 }
 
+/// A hair before a side and hardly towards it: it runs along the side, which yet decides where it enters.
+Ray along_side_ray(Source& s) {
+  const bool along_v = s.random.below(2) == 1;
+  const bool at_one = s.random.below(2) == 1;
+  const double hair = (1 + s.random.below(8)) * (at_one ? 0x1p-23 : 0x1p-25 / s.extent(!along_v));
+  const double across = at_one ? 1 + hair : -hair;
+  Ray ray = axis_ray(s, along_v ? across : s.awkward(false), along_v ? s.awkward(true) : across, along_v);
+  ray.h = s.random.uniform();
+  (along_v ? ray.du : ray.dv) = (at_one ? -hair : hair) / s.random.uniform(0.1, 2);
+  return ray;
+}
+
 struct RayKind {
   std::string_view name;
   Ray (*make)(Source&);
 };
 
 constexpr std::array kinds = {RayKind{"above", above_ray},
+                              RayKind{"along_side", along_side_ray},
                               RayKind{"axis_parallel", axis_parallel_ray},
                               RayKind{"corner", corner_ray},
                               RayKind{"distant_side", distant_side_ray},

@@ -110,12 +110,14 @@ Result<std::vector<std::uint8_t>> expand_bmp(const ImageSource& source) {
 
 std::vector<std::uint8_t> with_whole_palette(Bytes bytes) {
   std::vector<std::uint8_t> whole(bytes.begin(), bytes.end());
-  if (bytes.size() < header_size) return whole;
+  if (bytes.size() < 14 + 12) return whole;
   const std::size_t info_size = little_endian(bytes, 14), offset = little_endian(bytes, 10);
   const bool is_core = info_size == 12;  // of OS/2
+  if (!is_core && bytes.size() < header_size) return whole;
   const std::size_t bits = bytes[is_core ? 24 : 28], entry_size = is_core ? 3 : 4, start = 14 + info_size;
   if (bits > 8 || start > offset || offset > bytes.size()) return whole;
-  const std::size_t entries = (offset - start) / entry_size, needed = std::size_t{1} << bits;
+  const std::size_t entries = (offset - start) / entry_size, ignored_by_stb = is_core ? 4 : 0;
+  const std::size_t needed = (std::size_t{1} << bits) + ignored_by_stb;
   if (entries == 0 || entries >= needed) return whole;
   const std::size_t pixels = start + needed * entry_size;
   whole.resize(start + entries * entry_size);

@@ -108,14 +108,22 @@ Result<std::vector<std::uint8_t>> read_file(const fs::path& path, const std::str
 
 bool is_written_in_place(const fs::path& path) {
   std::error_code code;
+  const std::string name = fs::absolute(path, code).lexically_normal().string();
+  if (name.starts_with("/dev/") || name.starts_with("/proc/")) return true;  // /dev/stdout may lead to a file
   const fs::file_status status = fs::status(path, code);
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
 fs::path link_target(const fs::path& path) {
-  std::error_code code;
-  const fs::path target = fs::is_symlink(path, code) ? fs::canonical(path, code) : path;
-  return code || target.empty() ? path : target;
+  constexpr int most_links = 40;  // as Linux has it
+  fs::path target = path;
+  std::error_code code;  // of the last question: where the links end there may be nothing
+  for (int i = 0; i < most_links && fs::is_symlink(target, code); ++i) {
+    const fs::path next = fs::read_symlink(target, code);
+    if (code) return path;
+    target = target.parent_path() / next;
+  }
+  return target;
 }
 
 Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes, const std::string& kind) {
@@ -125,7 +133,7 @@ Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes, con
   if (fs::is_directory(status)) {
     reason = "it is a folder";
   } else {
-    reason = is_written_in_place(path) ? write_bytes(path, "wb", bytes) : replace_file(link_target(path), bytes);
+    reason = is_written_in_place(path) ? write_bytes(path, "ab", bytes) : replace_file(link_target(path), bytes);
   }
   if (!reason.empty()) return file_error(path, kind + ".write", fmt::format("cannot be written: {}", reason));
   return {};

@@ -22,7 +22,7 @@ tl::unexpected<Error> file_error(const std::filesystem::path& path, std::string 
 /// "<kind>.size", "<kind>.memory".
 Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path, const std::string& kind);
 
-/// Whether it exists and is no regular file: a pipe, /dev/stdout.
+/// Whether it exists and is no regular file, or is a name of the system's: a pipe, /dev/stdout.
 bool is_written_in_place(const std::filesystem::path& path);
 
 /// Where a symbolic link leads, for what is replaced is the file and not the link; else the path itself.

@@ -101,9 +101,15 @@ class HotReloader::State {
   std::size_t look() {
     SourceChanges changes;
     if (watch_.has_settled_change(FolderWatch::Clock::now())) changes = load();
-    std::vector<Recompilation> work = collect(changes);
-    recompile(*registry_, work, options_.threads);
-    return tell(work);
+    try {
+      std::vector<Recompilation> work = collect(changes);
+      recompile(*registry_, work, options_.threads);
+      return tell(work);
+    } catch (...) {  // what was collected is not to be lost: the next look takes every program
+      const std::scoped_lock lock(mutex_);
+      for (auto& [id, program] : programs_) program.is_new = true;
+      throw;
+    }
   }
 
   /// Reads everything anew. What cannot be read leaves the registry as it was.

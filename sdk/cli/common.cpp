@@ -57,11 +57,8 @@ void add_techniques_option(CLI::App& app, Context& context) {
   }
 }
 
-namespace {
-
-/// Every parameter of the registry by "owner.parameter".
-std::map<std::string, const Parameter*> known_parameters(const Registry& registry) {
-  std::map<std::string, const Parameter*> known;
+KnownParameters known_parameters(const Registry& registry) {
+  KnownParameters known;
   auto add = [&](const auto& descriptors) {
     for (const auto& [name, descriptor] : descriptors) {
       for (const Parameter& parameter : descriptor.parameters) known.emplace(name + "." + parameter.name, &parameter);
@@ -72,6 +69,8 @@ std::map<std::string, const Parameter*> known_parameters(const Registry& registr
   add(registry.stages);
   return known;
 }
+
+namespace {
 
 /// A number, or the name of an axis's value.
 Result<double> parse_setting(const Parameter& parameter, const std::string& key, const std::string& text) {
@@ -90,8 +89,11 @@ Result<double> parse_setting(const Parameter& parameter, const std::string& key,
 
 }  // namespace
 
-Result<const Parameter*> find_parameter(const Registry& registry, const std::string& key, const std::string& text) {
-  const std::map<std::string, const Parameter*> known = known_parameters(registry);
+std::string qualified(const std::string& key, const std::string& only) {
+  return key.find('.') == std::string::npos && !only.empty() ? only + "." + key : key;
+}
+
+Result<const Parameter*> find_parameter(const KnownParameters& known, const std::string& key, const std::string& text) {
   if (const auto parameter = known.find(key); parameter != known.end()) return parameter->second;
   std::vector<std::string> names;
   for (const auto& [name, ignored] : known) names.push_back(name);
@@ -104,12 +106,12 @@ Result<const Parameter*> find_parameter(const Registry& registry, const std::str
 Result<Settings> parse_settings(const Registry& registry, const std::vector<std::string>& given,
                                 const std::string& only) {
   Settings settings;
+  const KnownParameters known = known_parameters(registry);
   for (const std::string& item : given) {
     std::size_t equals = item.find('=');
     if (equals == std::string::npos)
       return fail(ErrorCode::usage, "cli.set", fmt::format("--set {}: expected name=value", item));
-    std::string key = item.substr(0, equals), text = item.substr(equals + 1);
-    if (key.find('.') == std::string::npos && !only.empty()) key = only + "." + key;
+    const std::string key = qualified(item.substr(0, equals), only), text = item.substr(equals + 1);
     std::string owner = key.substr(0, key.find('.'));
     if (key == owner + ".filter" && registry.techniques.contains(owner)) {
       Result<HeightFilter> filter = parse_height_filter(text);
@@ -117,7 +119,7 @@ Result<Settings> parse_settings(const Registry& registry, const std::vector<std:
       settings.filters[owner] = *filter;
       continue;
     }
-    const Result<const Parameter*> parameter = find_parameter(registry, key, "--set " + item);
+    const Result<const Parameter*> parameter = find_parameter(known, key, "--set " + item);
     if (!parameter) return tl::unexpected(parameter.error());
     Result<double> value = parse_setting(**parameter, key, text);
     if (!value) return tl::unexpected(value.error());
@@ -127,7 +129,7 @@ Result<Settings> parse_settings(const Registry& registry, const std::vector<std:
 }
 
 ValueTexts to_texts(const Registry& registry, const std::map<std::string, double>& values) {
-  const std::map<std::string, const Parameter*> known = known_parameters(registry);
+  const KnownParameters known = known_parameters(registry);
   ValueTexts texts;
   for (const auto& [name, value] : values) texts[name] = value_text(*known.at(name), value);
   return texts;

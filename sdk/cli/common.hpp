@@ -44,9 +44,15 @@ struct Settings {
 Result<Settings> parse_settings(const Registry& registry, const std::vector<std::string>& given,
                                 const std::string& only);
 
-/// The parameter "owner.name" that `text`, the option as it was given, asks for. Errors: "cli.set" with the nearest
-/// known name.
-Result<const Parameter*> find_parameter(const Registry& registry, const std::string& key, const std::string& text);
+/// `key`, or "only.key" where it names no owner and there is but one that it can mean.
+std::string qualified(const std::string& key, const std::string& only);
+
+/// Every parameter of the registry by "owner.parameter".
+using KnownParameters = std::map<std::string, const Parameter*>;
+KnownParameters known_parameters(const Registry& registry);
+
+/// The one that `text`, the option as it was given, asks for. Errors: "cli.set" with the nearest known name.
+Result<const Parameter*> find_parameter(const KnownParameters& known, const std::string& key, const std::string& text);
 
 /// Parameters by name, with their values as --set takes them.
 using ValueTexts = std::map<std::string, std::string>;

@@ -21,11 +21,6 @@ struct CompileOptions {
   unsigned jobs = 0;
 };
 
-/// A name without an owner is the technique's, where there is but one.
-std::string qualified(const std::string& name, const std::string& only) {
-  return name.find('.') == std::string::npos && !only.empty() ? only + "." + name : name;
-}
-
 Result<std::map<std::string, BindingTime>> parse_bindings(const Registry& registry, const CompileOptions& options,
                                                           const std::string& only) {
   std::map<std::string, BindingTime> times;
@@ -47,9 +42,10 @@ Result<std::map<std::string, BindingTime>> parse_bindings(const Registry& regist
     const std::string name = qualified(item.substr(0, item.find('=')), only);
     if (!name.ends_with(".filter")) times[name] = BindingTime::macro;  // a filter is a macro anyway
   }
+  const KnownParameters known = known_parameters(registry);
   for (const auto& [name, time] : times) {
     const Result<const Parameter*> parameter =
-        find_parameter(registry, name, fmt::format("--bind {}={}", name, to_string(time)));
+        find_parameter(known, name, fmt::format("--bind {}={}", name, to_string(time)));
     if (!parameter) return tl::unexpected(parameter.error());
   }
   return times;
@@ -136,14 +132,18 @@ Status write_outputs(const CompiledProgram& program, const std::vector<Target>& 
   return folder == "-" ? Status() : write_text(fmt::format("{}/{}.json", folder, base), program.reflection);
 }
 
+/// Where depfiles lie, and what they speak of.
+std::string depfile_folder(const CompileOptions& options) {
+  return options.output == "-" ? "." : options.output;
+}
+
 /// The rules of a run go to one depfile where it is named, else each technique has its own.
 Status write_depfiles(const CompileOptions& options, const std::map<std::string, std::string>& rules) {
-  const std::string folder = options.output == "-" ? "." : options.output;
   std::string all;
   for (const auto& [base, rule] : rules) {
     all += rule;
     if (!options.depfile.empty()) continue;
-    if (Status status = write_text(fmt::format("{}/{}.d", folder, base), rule); !status) return status;
+    if (Status status = write_text(fmt::format("{}/{}.d", depfile_folder(options), base), rule); !status) return status;
   }
   return options.depfile.empty() ? Status() : write_text(options.depfile, all);
 }
@@ -153,8 +153,7 @@ std::string depfile_rule_of(const Registry& registry, const ComposedProgram& pro
   std::vector<std::string> sources;
   for (const ComposedShader& shader : program.shaders)
     sources.insert(sources.end(), shader.files.begin(), shader.files.end());
-  return depfile_rule(fmt::format("{}/{}.json", options.output == "-" ? "." : options.output, base),
-                      files_on_disk(registry, sources));
+  return depfile_rule(fmt::format("{}/{}.json", depfile_folder(options), base), files_on_disk(registry, sources));
 }
 
 /// Adds the technique's rule to `rules`.

@@ -42,11 +42,12 @@ SweepPlan plan_of(const ReportOptions& options) {
 /// Takes out height files that are not there, and says so: a report on the others is worth having.
 void leave_out_missing(std::vector<std::string>& heights, std::vector<NotRun>& not_run) {
   std::erase_if(heights, [&](const std::string& item) {
-    std::error_code error;
-    std::filesystem::path whole = item, path = item.substr(0, item.rfind(':'));
-    bool there = std::filesystem::exists(whole, error) || std::filesystem::exists(path, error);
-    if (!there) not_run.push_back({"height map " + path.string(), "the file is not there"});
-    return !there;
+    double scale = 0;
+    const Result<std::string> path = split_scale(item, scale);
+    std::error_code ignored;
+    if (!path || std::filesystem::exists(*path, ignored)) return false;  // what is no scale is said later
+    not_run.push_back({"height map " + *path, "the file is not there"});
+    return true;
   });
 }
 

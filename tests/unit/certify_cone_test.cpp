@@ -39,6 +39,20 @@ TEST(CertifyCone, ThePrunedSearchFindsWhatTheExhaustiveOneDoes) {
   }
 }
 
+/// Two texels far apart that bound the cones of a third all but equally.
+TEST(CertifyCone, WhichOfTwoThatBoundAConeAlikeIsMetFirstDoesNotMatter) {
+  HeightMap two = with_address(constant_map(1, 20, 0), AddressMode::mirror);  // 6² and a little less, for texel 14
+  two.texels[8] = 1;
+  two.texels[12] = 1 / 3.0f;
+  HeightMap five = with_address(constant_map(42, 1, 0), AddressMode::clamp);  // for texel 31
+  for (const int x : {2, 16}) five.texels[static_cast<std::size_t>(x)] = 0.6f;
+  for (const int x : {7, 11, 12}) five.texels[static_cast<std::size_t>(x)] = 0.8f;
+  for (const HeightMap& map : {two, five}) {
+    for (const std::string name : {"cone", "relaxed_cone"})
+      EXPECT_EQ(baked(map, name, {}).texels, baked(map, name, {{name + ".exhaustive", 1}}).texels) << name;
+  }
+}
+
 TEST(CertifyCone, EveryConeIsTheWidestThatHoldsNoOtherTexel) {
   for (const auto& [name, map] : addressed_maps()) {
     const MapData cones = baked(map, "cone", {});

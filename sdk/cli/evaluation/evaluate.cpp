@@ -16,7 +16,16 @@ std::size_t steps_of(const EvaluationInput& input, std::size_t backends) {
   return backends * (2 * angles + input.scenes.size() * (drawing + 1));
 }
 
-/// FILE or FILE:scale; what follows the last colon is a scale if it is made of what numbers are made of.
+/// Rows and pictures are told apart by their map's name.
+std::string unlike_others(const std::string& stem, const std::vector<RayCase>& others) {
+  std::string name = stem;
+  const auto is_taken = [&](const RayCase& other) { return other.name == name; };
+  for (int i = 2; std::any_of(others.begin(), others.end(), is_taken); ++i) name = fmt::format("{}-{}", stem, i);
+  return name;
+}
+
+}  // namespace
+
 Result<std::string> split_scale(const std::string& item, double& scale) {
   const std::size_t colon = item.rfind(':');
   std::error_code ignored;
@@ -31,16 +40,6 @@ Result<std::string> split_scale(const std::string& item, double& scale) {
               fmt::format("--height {}: '{}' is no scale; expected FILE or FILE:scale with a positive number", item,
                           item.substr(colon + 1)));
 }
-
-/// Rows and pictures are told apart by their map's name.
-std::string unlike_others(const std::string& stem, const std::vector<RayCase>& others) {
-  std::string name = stem;
-  const auto is_taken = [&](const RayCase& other) { return other.name == name; };
-  for (int i = 2; std::any_of(others.begin(), others.end(), is_taken); ++i) name = fmt::format("{}-{}", stem, i);
-  return name;
-}
-
-}  // namespace
 
 Result<OpenBackends> open_backends(const std::vector<std::string>& names, std::vector<BackendInfo>& infos,
                                    std::vector<NotRun>& not_run) {

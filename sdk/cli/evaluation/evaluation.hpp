@@ -165,7 +165,11 @@ void judge(const EvaluationInput& input, Evaluation& evaluation);
 
 nlohmann::json to_json(const Evaluation& evaluation);
 
-/// Scenes and height files named on a command line → input. `heights` may be "file" or "file:scale".
+/// The file of "file" or "file:scale", and `scale` where it is given: what follows the last colon is a scale if it is
+/// made of what numbers are made of. Errors: "cli.scale" for one that is not positive.
+Result<std::string> split_scale(const std::string& item, double& scale);
+
+/// Scenes and height files named on a command line → input. `heights` go through split_scale.
 Result<EvaluationInput> make_input(const Registry& registry, const std::vector<std::string>& techniques,
                                    const std::vector<std::string>& scenes, const std::vector<std::string>& heights,
                                    const std::string& address, const std::vector<std::string>& set);

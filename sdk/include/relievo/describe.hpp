@@ -98,8 +98,9 @@ struct TechniqueDescriptor {
 };
 
 /// `single`: as large as the height map. `pyramid`: the next powers of two, with every level down to 1×1; level k is
-/// baked from level k − 1.
-enum class MapLevels { single, pyramid };
+/// baked from level k − 1. `coarse_pyramid`: the same without its two finest levels, so a texel of level 0 is for
+/// 4 × 4.
+enum class MapLevels { single, pyramid, coarse_pyramid };
 std::string_view to_string(MapLevels levels);
 
 /// sampler2D, sampler2DArray, sampler3D. The last two have `single` levels only.

@@ -9,7 +9,7 @@
 namespace relievo {
 namespace {
 
-constexpr std::array<std::string_view, 2> level_names = {"single", "pyramid"};
+constexpr std::array<std::string_view, 3> level_names = {"single", "pyramid", "coarse_pyramid"};
 constexpr std::array<std::string_view, 3> dimension_names = {"2d", "2d_array", "3d"};
 constexpr std::array<std::string_view, 4> rounding_names = {"nearest", "up", "down", "exact"};
 constexpr std::array<std::string_view, 2> texel_names = {"unorm", "uint"};

@@ -18,6 +18,12 @@ const std::vector<std::pair<std::string_view, const Certifier*>>& all();
 /// "certify.shape" unless extent, layers, levels and channels are as expected and every texel is there.
 Status expect_shape(const MapData& map, const MapData& expected);
 
+/// The same for the pyramid that such a map of this height map is.
+Status expect_pyramid(const MapData& map, const HeightMap& height_map, MapLevels levels, int channels);
+
+/// Index of channel 0 of a texel of a level, for flat maps.
+std::size_t first_value(const MapData& map, int x, int y, int level);
+
 /// The value that `map` was baked with: of `options`, else the default of its descriptor.
 /// Errors: "certify.parameter" when it is out of its range or, of an integer, not whole.
 Result<double> baked_value(const CertifyOptions& options, std::string_view map, std::string_view parameter);

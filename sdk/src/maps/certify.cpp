@@ -49,6 +49,19 @@ Status expect_shape(const MapData& map, const MapData& expected) {
               fmt::format("map '{}' has {}; expected {}", map.name, text(map), text(expected)));
 }
 
+Status expect_pyramid(const MapData& map, const HeightMap& height_map, MapLevels levels, int channels) {
+  MapDescriptor descriptor;
+  descriptor.levels = levels;
+  descriptor.channels = channels;
+  return expect_shape(map, map_shape(descriptor, height_map.width, height_map.height, height_map.address));
+}
+
+std::size_t first_value(const MapData& map, int x, int y, int level) {
+  const MapLevel shape = map_level(map, level);
+  const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(shape.width);
+  return (shape.offset + row + static_cast<std::size_t>(x)) * static_cast<std::size_t>(map.channels);
+}
+
 void count_check(Certificate& certificate, double excess, double tolerance, int x, int y, int level, int layer) {
   ++certificate.checked;
   if (!(excess > tolerance)) return;

@@ -32,8 +32,9 @@ MapData map_shape(const MapDescriptor& descriptor, int width, int height, Addres
   map.bits = descriptor.rounding.empty() ? 32 : parameter_of(descriptor, "bits", values, 32);
   map.is_uint = descriptor.is_uint;
   if (descriptor.levels == MapLevels::single) return map;
-  map.width = static_cast<int>(std::bit_ceil(static_cast<unsigned>(width)));
-  map.height = static_cast<int>(std::bit_ceil(static_cast<unsigned>(height)));
+  const int left_out = descriptor.levels == MapLevels::coarse_pyramid ? 2 : 0;
+  map.width = std::max(1, static_cast<int>(std::bit_ceil(static_cast<unsigned>(width))) >> left_out);
+  map.height = std::max(1, static_cast<int>(std::bit_ceil(static_cast<unsigned>(height))) >> left_out);
   map.levels = std::bit_width(static_cast<unsigned>(std::max(map.width, map.height)));
   return map;
 }

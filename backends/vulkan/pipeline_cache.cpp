@@ -1,13 +1,14 @@
 #include "pipeline_cache.hpp"
 
-#include <unistd.h>
 #include <xxhash.h>
 
-#include <atomic>
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <vector>
+
+#include "files/whole_file.hpp"
 
 namespace relievo::vulkan {
 
@@ -32,20 +33,11 @@ std::vector<char> load(const std::filesystem::path& path) {
   return hash_of(data) == stored ? data : std::vector<char>();
 }
 
-/// Writes beside the file and renames, so that a reader never sees half a file.
-bool store(const std::filesystem::path& path, const std::vector<char>& data, Hash hash) {
-  static std::atomic<int> counter = 0;
-  std::filesystem::path temporary = path;
-  temporary += fmt::format(".{}-{}", getpid(), counter++);
-  std::ofstream file(temporary, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(&hash), sizeof hash);
-  file.write(data.data(), static_cast<std::streamsize>(data.size()));
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(temporary, path, error);
-  if (file && !error) return true;
-  std::filesystem::remove(temporary, error);
-  return false;
+Status store(const std::filesystem::path& path, const std::vector<char>& data, Hash hash) {
+  std::vector<std::uint8_t> bytes(sizeof hash + data.size());
+  std::memcpy(bytes.data(), &hash, sizeof hash);
+  std::copy(data.begin(), data.end(), bytes.begin() + sizeof hash);
+  return write_file(path, bytes, "vulkan.cache");
 }
 
 }  // namespace
@@ -72,7 +64,7 @@ std::string PipelineCache::save() {
   data.resize(size);
   const Hash hash = hash_of(data);
   if (hash == saved_hash_) return {};
-  if (!store(path_, data, hash)) return fmt::format("The pipeline cache cannot be written to {}", path_.string());
+  if (Status status = store(path_, data, hash); !status) return format(status.error());
   saved_hash_ = hash;
   return {};
 }

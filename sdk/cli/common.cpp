@@ -8,9 +8,8 @@
 #include <cstdio>
 #include <fstream>
 
-#include "image/file.hpp"
+#include "files/whole_file.hpp"
 #include "mesh_file.hpp"
-#include "permute/archive/file.hpp"
 #include "relievo/program_cache.hpp"
 
 namespace relievo::cli {
@@ -217,21 +216,7 @@ Status write_text(const std::string& path, const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), stdout);  // main looks whether it came out
     return {};
   }
-  if (is_written_in_place(path))
-    return write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "cli");
-  const std::filesystem::path target = link_target(path);
-  archive::sweep_beside(target);
-  std::filesystem::path temporary;
-  const archive::File file = archive::create_beside(target, ".tmp", temporary);
-  std::error_code error, ignored;
-  if (!file || !file.write_at(0, text) || !file.settle()) {
-    error.assign(errno, std::generic_category());
-  } else {
-    std::filesystem::rename(temporary, target, error);
-  }
-  if (!error) return {};
-  if (file) std::filesystem::remove(temporary, ignored);
-  return fail(ErrorCode::io, "cli.write", fmt::format("'{}' cannot be written: {}", path, error.message()), path);
+  return write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "cli");
 }
 
 Status make_folder(const std::filesystem::path& path) {

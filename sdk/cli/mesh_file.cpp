@@ -11,7 +11,7 @@
 #include <map>
 #include <system_error>
 
-#include "image/file.hpp"
+#include "files/whole_file.hpp"
 
 namespace relievo::cli {
 

@@ -335,6 +335,16 @@ TEST(ArchiveWriter, LeavesNothingWhenItIsNotFinished) {
   EXPECT_EQ(TemporaryFolder::read(folder / "a.rva"), "what was there");
 }
 
+TEST(ArchiveWriter, WritesThroughALinkAndLeavesIt) {
+  const TemporaryFolder folder;
+  folder.write("target.rva", "what was there");
+  std::filesystem::create_symlink("target.rva", folder / "a.rva");
+  write_archive(folder / "a.rva", sample_archive());
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "a.rva"));
+  EXPECT_EQ(TemporaryFolder::read(folder / "target.rva"), archive_bytes(sample_archive()));
+  EXPECT_EQ(folder.count(), 2u);
+}
+
 TEST(ArchiveWriter, FinishesOnce) {
   const TemporaryFolder folder;
   ArchiveWriter writer = test::expect_value(ArchiveWriter::create(folder / "a.rva", sample_axes()));

@@ -4,7 +4,7 @@
 
 #include "describe/toml_reader.hpp"
 #include "evaluation/hard_cases.hpp"
-#include "image/file.hpp"
+#include "files/whole_file.hpp"
 
 namespace relievo::cli {
 

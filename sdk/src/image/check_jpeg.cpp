@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "files/whole_file.hpp"
 #include "image/decode.hpp"
-#include "image/file.hpp"
 
 namespace relievo {
 

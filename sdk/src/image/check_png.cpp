@@ -3,8 +3,8 @@
 
 #include <string_view>
 
+#include "files/whole_file.hpp"
 #include "image/decode.hpp"
-#include "image/file.hpp"
 
 namespace relievo {
 

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "files/whole_file.hpp"
 #include "image/array.hpp"
-#include "image/file.hpp"
 #include "relievo/height_map.hpp"
 
 namespace relievo {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include "files/whole_file.hpp"
 #include "image/array.hpp"
-#include "image/file.hpp"
 
 namespace relievo {
 

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "files/whole_file.hpp"
 #include "image/decode.hpp"
-#include "image/file.hpp"
 
 namespace relievo {
 

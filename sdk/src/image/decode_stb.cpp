@@ -4,8 +4,8 @@
 #include <cstring>
 #include <memory>
 
+#include "files/whole_file.hpp"
 #include "image/decode.hpp"
-#include "image/file.hpp"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string_view>
 
+#include "files/whole_file.hpp"
 #include "image/exr.hpp"
-#include "image/file.hpp"
 
 namespace relievo {
 

@@ -5,8 +5,8 @@
 #include <bit>
 #include <cstring>
 
+#include "files/whole_file.hpp"
 #include "image/exr.hpp"
-#include "image/file.hpp"
 
 namespace relievo {
 

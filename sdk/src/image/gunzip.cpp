@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "files/whole_file.hpp"
 #include "image/decode.hpp"
-#include "image/file.hpp"
 
 namespace relievo {
 

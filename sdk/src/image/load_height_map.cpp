@@ -5,9 +5,9 @@
 #include <exception>
 #include <limits>
 
+#include "files/whole_file.hpp"
 #include "image/array.hpp"
 #include "image/decode.hpp"
-#include "image/file.hpp"
 #include "relievo/height_map.hpp"
 
 namespace relievo {

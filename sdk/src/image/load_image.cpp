@@ -4,8 +4,8 @@
 #include <exception>
 #include <string_view>
 
+#include "files/whole_file.hpp"
 #include "image/decode.hpp"
-#include "image/file.hpp"
 
 namespace relievo {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "image/file.hpp"
+#include "files/whole_file.hpp"
 #include "relievo/image.hpp"
 
 #pragma GCC diagnostic push

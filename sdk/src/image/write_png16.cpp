@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "image/file.hpp"
+#include "files/whole_file.hpp"
 #include "relievo/image.hpp"
 
 namespace relievo {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "image/file.hpp"
+#include "files/whole_file.hpp"
 #include "maps/map_layout.hpp"
 #include "relievo/image.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "image/file.hpp"
+#include "files/whole_file.hpp"
 #include "relievo/scene.hpp"
 #include "scene/scene_section.hpp"
 #include "scene/vectors.hpp"

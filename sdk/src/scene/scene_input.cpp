@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "image/file.hpp"
+#include "files/whole_file.hpp"
 #include "relievo/scene.hpp"
 
 namespace relievo {

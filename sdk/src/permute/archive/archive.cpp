@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "image/file.hpp"
-#include "permute/archive/file.hpp"
+#include "files/whole_file.hpp"
 #include "permute/archive/index.hpp"
+#include "permute/archive/mapping.hpp"
 #include "permute/archive/missing.hpp"
 #include "permute/archive/naming.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "image/file.hpp"
+#include "files/whole_file.hpp"
 
 namespace relievo::archive {
 
@@ -16,7 +16,7 @@ constexpr std::size_t kBufferSize = std::size_t{1} << 20;
 /// A file that is written from front to end, in large pieces.
 class Output {
  public:
-  explicit Output(const File& file) : file_(file) { buffer_.reserve(kBufferSize); }
+  explicit Output(const files::File& file) : file_(file) { buffer_.reserve(kBufferSize); }
 
   bool append(std::string_view bytes) {
     if (buffer_.size() + bytes.size() > kBufferSize && !flush()) return false;
@@ -30,7 +30,7 @@ class Output {
   }
 
   /// Appends a blob of the spool, padded.
-  bool append(const File& spool, const SpooledBlob& blob) {
+  bool append(const files::File& spool, const SpooledBlob& blob) {
     for (std::uint64_t done = 0; done < blob.size;) {
       if (buffer_.size() == kBufferSize && !flush()) return false;
       const std::size_t held = buffer_.size();
@@ -50,12 +50,12 @@ class Output {
   }
 
  private:
-  const File& file_;
+  const files::File& file_;
   std::string buffer_;
   std::uint64_t offset_ = 0;
 };
 
-bool write(const File& file, const Layout& layout, const Spool& spool) {
+bool write(const files::File& file, const Layout& layout, const Spool& spool) {
   Output output(file);
   if (!output.append(layout.header)) return false;
   for (const std::uint32_t blob : layout.blobs) {
@@ -67,13 +67,14 @@ bool write(const File& file, const Layout& layout, const Spool& spool) {
 /// The spool has the blobs where they belong: it lacks only what is around them, and a name.
 bool complete(const Spool& spool, const Layout& layout, const fs::path& path, fs::path& temporary) {
   return spool.file().write_at(0, layout.header) && spool.file().write_at(layout.index_offset, layout.index) &&
-         give_name(spool.file(), path, ".tmp", temporary);
+         files::give_name(spool.file(), path, ".tmp", temporary);
 }
 
 /// False, with errno, when the archive could not be written under a temporary name. `file` may hold it open.
-bool write_beside(const fs::path& path, const Layout& layout, const Spool& spool, fs::path& temporary, File& file) {
+bool write_beside(const fs::path& path, const Layout& layout, const Spool& spool, fs::path& temporary,
+                  files::File& file) {
   if (layout.is_spool && spool.can_be_named() && complete(spool, layout, path, temporary)) return true;
-  file = create_beside(path, ".tmp", temporary);
+  file = files::create_beside(path, ".tmp", temporary);
   return file && write(file, layout, spool);
 }
 
@@ -91,7 +92,7 @@ Status check_replaceable(const fs::path& path) {
 
 Status replace(const fs::path& path, const Layout& layout, const Spool& spool) {
   fs::path temporary;
-  File file;  // locked until it has its name
+  files::File file;  // locked until it has its name
   Status status;
   if (!write_beside(path, layout, spool, temporary, file)) status = write_failure(path);
   std::error_code failed, ignored;

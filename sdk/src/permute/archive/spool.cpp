@@ -1,7 +1,12 @@
 #include "permute/archive/spool.hpp"
 
+#include <fmt/format.h>
 #include <xxhash.h>
 
+#include <cerrno>
+#include <cstring>
+
+#include "files/whole_file.hpp"
 #include "permute/archive/format.hpp"
 
 namespace relievo::archive {
@@ -11,10 +16,14 @@ ContentHash content_hash(std::string_view bytes) {
   return {hash.low64, hash.high64};
 }
 
+tl::unexpected<Error> write_failure(const std::filesystem::path& path) {
+  return file_error(path, "archive.write", fmt::format("cannot be written: {}", std::strerror(errno)));
+}
+
 Result<Spool> Spool::create(const std::filesystem::path& path) {
   Spool spool;
   spool.path_ = path;
-  spool.file_ = create_unnamed(path, spool.can_be_named_);
+  spool.file_ = files::create_unnamed(path, spool.can_be_named_);
   if (!spool.file_) return write_failure(path);
   return spool;
 }

@@ -7,8 +7,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "permute/archive/file.hpp"
+#include "files/file_beside.hpp"
 #include "permute/archive/format.hpp"
+#include "relievo/result.hpp"
 
 namespace relievo::archive {
 
@@ -28,6 +29,9 @@ struct SpooledBlob {
   std::uint64_t hash = 0;    ///< as in BlobRecord
 };
 
+/// "'a.rva' cannot be written: No space left on device [archive.write]", from errno.
+tl::unexpected<Error> write_failure(const std::filesystem::path& path);
+
 /// Not thread-safe.
 class Spool {
  public:
@@ -38,13 +42,13 @@ class Spool {
   Result<std::uint32_t> add(std::string_view bytes, const ContentHash& hash);
 
   const std::vector<SpooledBlob>& blobs() const { return blobs_; }
-  const File& file() const { return file_; }
-  /// Whether `give_name` works on this file system.
+  const files::File& file() const { return file_; }
+  /// Whether `files::give_name` works on this file system.
   bool can_be_named() const { return can_be_named_; }
 
  private:
   std::filesystem::path path_;
-  File file_;
+  files::File file_;
   std::vector<SpooledBlob> blobs_;
   std::unordered_map<ContentHash, std::uint32_t, ContentHasher> numbers_;
   std::uint64_t end_ = sizeof(Header);  ///< so that the spool may become the archive

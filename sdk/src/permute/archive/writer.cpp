@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "image/file.hpp"
+#include "files/whole_file.hpp"
 #include "permute/archive/contents.hpp"
 #include "permute/archive/naming.hpp"
 #include "permute/archive/output_order.hpp"
@@ -153,10 +153,11 @@ Result<ArchiveWriter> ArchiveWriter::create(const std::filesystem::path& path, s
   if (const std::string fault = archive::fault_of(std::span<const ArchiveAxis>(axes)); !fault.empty())
     return fail(ErrorCode::usage, "archive.axes", fault, path.string());
   if (Status status = archive::check_replaceable(path); !status) return tl::unexpected(status.error());
-  archive::sweep_beside(path);
-  Result<archive::Spool> spool = archive::Spool::create(path);
+  const std::filesystem::path target = files::link_target(path);
+  files::sweep_beside(target);
+  Result<archive::Spool> spool = archive::Spool::create(target);
   if (!spool) return tl::unexpected(spool.error());
-  return ArchiveWriter(std::make_unique<State>(path, std::move(axes), std::move(*spool)));
+  return ArchiveWriter(std::make_unique<State>(target, std::move(axes), std::move(*spool)));
 }
 
 Result<std::uint32_t> ArchiveWriter::add_program(const ProgramImage& program) {

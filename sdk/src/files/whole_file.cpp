@@ -1,16 +1,17 @@
-#include "image/file.hpp"
+#include "files/whole_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <new>
+#include <string_view>
 #include <system_error>
+
+#include "files/file_beside.hpp"
 
 namespace relievo {
 
@@ -23,19 +24,10 @@ struct Closer {
 };
 using FileHandle = std::unique_ptr<std::FILE, Closer>;
 
-/// Unlike any other writer's, in this process or another.
-fs::path temporary_name(const fs::path& path) {
-  static std::atomic<unsigned> counter{0};
-  const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
-  fs::path name = path;
-  name += fmt::format(".{:x}-{}.tmp", static_cast<unsigned long long>(now), counter++);
-  return name;
-}
-
-/// Empty when all is well, else the system's reason. `mode` "wbx" refuses a file that exists.
-std::string write_bytes(const fs::path& path, const char* mode, std::span<const std::uint8_t> bytes) {
+/// Empty when all is well, else the system's reason.
+std::string append(const fs::path& path, std::span<const std::uint8_t> bytes) {
   errno = 0;
-  FileHandle file(std::fopen(path.string().c_str(), mode));
+  FileHandle file(std::fopen(path.string().c_str(), "ab"));
   if (!file) return std::strerror(errno);
   const bool written = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
   const bool closed = std::fclose(file.release()) == 0;
@@ -57,17 +49,22 @@ std::vector<std::uint8_t> read_all(std::FILE* file, std::uintmax_t expected) {
   return bytes;
 }
 
-std::string replace_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
-  const fs::path temporary = temporary_name(path);
-  std::string reason = write_bytes(temporary, "wbx", bytes);
-  std::error_code code;
-  if (reason.empty()) {
-    fs::rename(temporary, path, code);
-    if (code) reason = code.message();
+/// Empty when all is well, else the system's reason.
+std::string replace(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  files::sweep_beside(path);
+  fs::path temporary;
+  const files::File file = files::create_beside(path, ".tmp", temporary);
+  if (!file) return std::strerror(errno);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::error_code failed, ignored;
+  if (file.write_at(0, text) && file.settle()) {
+    fs::rename(temporary, path, failed);
+  } else {
+    failed.assign(errno, std::generic_category());
   }
-  std::error_code ignored;
-  if (!reason.empty()) fs::remove(temporary, ignored);
-  return reason;
+  if (!failed) return {};
+  fs::remove(temporary, ignored);
+  return failed.message();
 }
 
 }  // namespace
@@ -114,18 +111,6 @@ bool is_written_in_place(const fs::path& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-fs::path link_target(const fs::path& path) {
-  constexpr int most_links = 40;  // as Linux has it
-  fs::path target = path;
-  std::error_code code;  // of the last question: where the links end there may be nothing
-  for (int i = 0; i < most_links && fs::is_symlink(target, code); ++i) {
-    const fs::path next = fs::read_symlink(target, code);
-    if (code) return path;
-    target = target.parent_path() / next;
-  }
-  return target;
-}
-
 Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes, const std::string& kind) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
@@ -133,7 +118,7 @@ Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes, con
   if (fs::is_directory(status)) {
     reason = "it is a folder";
   } else {
-    reason = is_written_in_place(path) ? write_bytes(path, "ab", bytes) : replace_file(link_target(path), bytes);
+    reason = is_written_in_place(path) ? append(path, bytes) : replace(files::link_target(path), bytes);
   }
   if (!reason.empty()) return file_error(path, kind + ".write", fmt::format("cannot be written: {}", reason));
   return {};

@@ -25,9 +25,6 @@ Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path, c
 /// Whether it exists and is no regular file, or is a name of the system's: a pipe, /dev/stdout.
 bool is_written_in_place(const std::filesystem::path& path);
 
-/// Where a symbolic link leads, for what is replaced is the file and not the link; else the path itself.
-std::filesystem::path link_target(const std::filesystem::path& path);
-
 /// Writes a file under a temporary name beside it and renames it when it is complete, so that nobody ever sees half of
 /// it; through a symbolic link, which stays. What is_written_in_place is. Errors: "<kind>.write".
 Status write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes, const std::string& kind);

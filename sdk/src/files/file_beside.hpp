@@ -1,4 +1,4 @@
-/// Files by descriptor: what mapping, spooling and replacing need beyond streams.
+/// Files by descriptor, and temporary ones beside those that they are to replace.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "relievo/result.hpp"
-
-namespace relievo::archive {
+namespace relievo::files {
 
 /// An open file, closed in the end.
 class File {
@@ -36,6 +34,9 @@ class File {
   int descriptor_ = -1;
 };
 
+/// Where a symbolic link leads, for what is replaced is the file and not the link; else the path itself.
+std::filesystem::path link_target(const std::filesystem::path& path);
+
 /// A new, empty file beside `path`, of a name that nobody else has; `name` receives it. While it is open it is locked,
 /// so that what a killed process left can be told from what is being written, on any machine.
 File create_beside(const std::filesystem::path& path, std::string_view suffix, std::filesystem::path& name);
@@ -51,25 +52,4 @@ bool give_name(const File& file, const std::filesystem::path& path, std::string_
 /// Removes what killed processes left beside `path`: files that `create_beside` named and nobody holds open.
 void sweep_beside(const std::filesystem::path& path);
 
-/// "'a.rva' cannot be written: No space left on device [archive.write]", from errno.
-tl::unexpected<Error> write_failure(const std::filesystem::path& path);
-
-/// A file's bytes in memory, or somebody else's.
-class Mapping {
- public:
-  Mapping() = default;
-  explicit Mapping(std::span<const std::byte> bytes) : bytes_(bytes) {}
-  Mapping(Mapping&& other) noexcept;
-  Mapping& operator=(Mapping&& other) noexcept;
-  ~Mapping();
-
-  /// Errors: "archive.open".
-  static Result<Mapping> of_file(const std::filesystem::path& path);
-  std::span<const std::byte> bytes() const { return bytes_; }
-
- private:
-  std::span<const std::byte> bytes_;
-  bool owned_ = false;
-};
-
-}  // namespace relievo::archive
+}  // namespace relievo::files

@@ -1,9 +1,8 @@
-#include "permute/archive/file.hpp"
+#include "files/file_beside.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,12 +12,9 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <utility>
 
-#include "image/file.hpp"
-
-namespace relievo::archive {
+namespace relievo::files {
 
 namespace fs = std::filesystem;
 
@@ -106,6 +102,18 @@ bool lock(int descriptor, nlink_t names) {
 
 }  // namespace
 
+fs::path link_target(const fs::path& path) {
+  constexpr int most_links = 40;  // as Linux has it
+  fs::path target = path;
+  std::error_code code;  // of the last question: where the links end there may be nothing
+  for (int i = 0; i < most_links && fs::is_symlink(target, code); ++i) {
+    const fs::path next = fs::read_symlink(target, code);
+    if (code) return path;
+    target = target.parent_path() / next;
+  }
+  return target;
+}
+
 File create_beside(const fs::path& path, std::string_view suffix, fs::path& name) {
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     name = fresh_name(path, suffix);
@@ -152,40 +160,4 @@ void sweep_beside(const fs::path& path) {
   }
 }
 
-tl::unexpected<Error> write_failure(const fs::path& path) {
-  return file_error(path, "archive.write", fmt::format("cannot be written: {}", std::strerror(errno)));
-}
-
-Mapping::Mapping(Mapping&& other) noexcept
-    : bytes_(std::exchange(other.bytes_, {})), owned_(std::exchange(other.owned_, false)) {}
-
-Mapping& Mapping::operator=(Mapping&& other) noexcept {
-  std::swap(bytes_, other.bytes_);
-  std::swap(owned_, other.owned_);
-  return *this;
-}
-
-Mapping::~Mapping() {
-  if (owned_) ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
-}
-
-Result<Mapping> Mapping::of_file(const fs::path& path) {
-  const auto failure = [&path](const std::string& reason) {
-    return file_error(path, "archive.open", fmt::format("cannot be opened: {}", reason));
-  };
-  // A pipe would block until somebody writes to it.
-  const File file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  struct stat status {};
-  if (!file || ::fstat(file.descriptor(), &status) != 0) return failure(std::strerror(errno));
-  if (!S_ISREG(status.st_mode)) return failure("it is no regular file");
-  Mapping mapping;
-  if (status.st_size == 0) return mapping;
-  const auto size = static_cast<std::size_t>(status.st_size);
-  void* address = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.descriptor(), 0);
-  if (address == MAP_FAILED) return failure(std::strerror(errno));
-  mapping.bytes_ = {static_cast<const std::byte*>(address), size};
-  mapping.owned_ = true;
-  return mapping;
-}
-
-}  // namespace relievo::archive
+}  // namespace relievo::files

@@ -189,21 +189,14 @@ TEST_F(MapFileTest, DescriptionsThatAreNoneAreRefused) {
     bad[key] = nlohmann::json::array({-1});
     EXPECT_TRUE(refused(bad.dump())) << key << " of another type";
   }
-  for (const auto& [key, value] : std::map<std::string, nlohmann::json>{{"width", 0},
-                                                                        {"levels", 4294967301},  // 5 in 32 bits
-                                                                        {"channels", 1e300},
-                                                                        {"bits", 16.5},
-                                                                        {"height", 1 << 20},
-                                                                        {"layers", -1},
-                                                                        {"levels", 40},
-                                                                        {"channels", 5},
-                                                                        {"bits", 9},
-                                                                        {"schema", 2},
-                                                                        {"texels", "int"},
-                                                                        {"texels", "uint"},  // has one channel
-                                                                        {"address", "wrap"},
-                                                                        {"dimension", "4d"},
-                                                                        {"values", {{"a", "b"}}}}) {
+  const std::pair<const char*, nlohmann::json> faults[] = {
+      {"width", 0},        {"levels", 4294967301},  // 5 in 32 bits
+      {"channels", 1e300}, {"bits", 16.5},         {"height", 1 << 20},
+      {"layers", -1},      {"levels", 40},         {"channels", 5},
+      {"bits", 9},         {"schema", 2},          {"texels", "int"},
+      {"texels", "uint"},  // has one channel
+      {"address", "wrap"}, {"dimension", "4d"},    {"values", {{"a", "b"}}}};
+  for (const auto& [key, value] : faults) {
     nlohmann::json bad = good;
     bad[key] = value;
     EXPECT_TRUE(refused(bad.dump())) << key << " = " << value;

@@ -64,7 +64,7 @@ class LoggedCache {
   std::unique_ptr<Cache> cache_;
 };
 
-/// Loads that answered with something else than what the key stands for.
+/// How often loads answered with what the key stands for, with nothing, and with something else.
 struct Answers {
   int right = 0, none = 0, wrong = 0;
 };

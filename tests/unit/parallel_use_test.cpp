@@ -17,6 +17,7 @@
 #include "relievo/program_cache.hpp"
 #include "relievo/trace.hpp"
 #include "support/archive_walk.hpp"
+#include "support/caches.hpp"
 #include "support/edited_technique.hpp"
 #include "support/files.hpp"
 
@@ -135,11 +136,11 @@ class ParallelUse : public ::testing::Test {
   }
 
   std::string use_cache_folder() {
-    const CacheKey key = cache_key({"parallel", std::to_string(++stored_ % 7)});
-    const std::string payload(1000 * (stored_ % 7 + 1), 'x');
-    cache_->store(key, payload);
-    const auto found = cache_->load(key);
-    if (found && found->find_first_not_of('x') != std::string::npos) return "a payload that nobody stored";
+    const unsigned number = ++stored_ % 7;
+    const std::size_t size = 1000 * (number + 1);
+    cache_->store(test::numbered_key(number), test::numbered_payload(number, size));
+    for (unsigned other = 0; other < 7; ++other) test::judge(answers_, *cache_, other, 1000 * (other + 1));
+    if (answers_.wrong > 0) return "a payload that nobody stored under its key";
     cache_->counts();
     const auto contents = stored_ % 5 == 0 ? clear_cache(folder_ / "cache") : verify_cache(folder_ / "cache");
     return contents ? "" : format(contents.error());
@@ -207,7 +208,8 @@ class ParallelUse : public ::testing::Test {
   const PermutationPlan plan_ = *plan_permutations(registry_, manifest_);
   std::shared_ptr<Cache> cache_;
   std::atomic<int> logged_ = 0, calls_ = 0, errors_ = 0;
-  std::atomic<unsigned> stored_ = 0;
+  unsigned stored_ = 0;
+  test::Answers answers_;  ///< to one thread
   std::atomic<bool> overlapped_ = false;
   std::unique_ptr<HotReloader> reloader_;
 };
@@ -242,6 +244,7 @@ TEST_F(ParallelUse, CompilingPermutingReadingAndReloadingAtOnceMakeWhatEachMakes
   for (const auto& [name, fault] : crowd.faults()) ADD_FAILURE() << name << ": " << fault;
   EXPECT_EQ(crowd.rounds().size(), 9u);
   EXPECT_FALSE(overlapped_) << "two callbacks at once";
+  EXPECT_GT(answers_.right, 0);
   EXPECT_GE(errors_, kEdits / 3);
   reloader_.reset();
 }

@@ -76,7 +76,7 @@ TEST(Layered, TheSameFiguresCatchAMapThatPassesOverHits) {
   for (const std::string& technique : layered) {
     const std::string name = technique == "pyramid" ? "max_pyramid" : technique;
     MapSet maps = map_set(map);
-    maps[name] = baked(name, map);
+    maps[name] = baked(map, name);
     MapTexels& texels = maps[name].texels;
     for (std::size_t i = 0; i < texels.size(); ++i) texels.set(i, std::max(texels[i] - 0.1f, 0.0f));
     const auto hits = trace_with(map, rays, fine_request(technique), maps);
@@ -101,9 +101,16 @@ TEST(Layered, BothFormsOfThePyramidFindTheSame) {
 TEST(Layered, ARayOutOfStepsIsExhaustedAndNoHit) {
   const HeightMap map = white_noise_map(33, 20);
   const std::vector<Ray> rays = make_view_rays(20, 0.1, 16, 16);
+  const std::vector<Hit> truth = Oracle(map).trace(rays);
   for (const std::string& technique : layered) {
-    for (const Hit& hit : trace_on("vulkan", map, rays, request_of(technique, {{technique + ".max_steps", 1}})))
-      EXPECT_NE(hit.status, HitStatus::hit) << technique;
+    const auto hits = trace_on("vulkan", map, rays, request_of(technique, {{technique + ".max_steps", 1}}));
+    int exhausted = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_NE(hits[i].status, HitStatus::hit) << technique << " " << describe(rays[i]);
+      EXPECT_FALSE(hits[i].status == HitStatus::miss && is_hit(truth[i])) << technique << " " << describe(rays[i]);
+      exhausted += hits[i].status == HitStatus::exhausted;
+    }
+    EXPECT_GT(exhausted, 0) << technique;
   }
 }
 

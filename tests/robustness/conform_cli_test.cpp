@@ -18,12 +18,13 @@ class ConformCli : public ::testing::Test {
                   "map = {kind = \"wall\", width = 64, height = 8, along = \"v\"}\n"
                   "rays = {kind = \"random\", angle = 10, angle_to = 30}\naddress = [\"repeat\", \"clip\"]\n");
   }
-  /// A technique of a user that claims to find the first hit always.
-  void write_technique(const std::string& body) const {
+  /// A technique of a user with a claim of first hits.
+  void write_technique(const std::string& body, const std::string& first_hit = "always") const {
     fs::create_directories(folder_ / "techniques/mine");
-    folder_.write("techniques/mine/technique.toml",
-                  "schema = 1\nname = \"mine\"\ntitle = \"Mine\"\nclass = \"safe\"\nfirst_hit = \"always\"\n"
-                  "module = \"mine.glsl\"\nmaps = [\"height\"]\nfeatures = [\"dynamic_loops\", \"explicit_lod\"]\n");
+    folder_.write(
+        "techniques/mine/technique.toml",
+        "schema = 1\nname = \"mine\"\ntitle = \"Mine\"\nclass = \"safe\"\nfirst_hit = \"" + first_hit +
+            "\"\nmodule = \"mine.glsl\"\nmaps = [\"height\"]\nfeatures = [\"dynamic_loops\", \"explicit_lod\"]\n");
     folder_.write("techniques/mine/mine.glsl",
                   "#include \"shaders/lib/search.glsl\"\n\nHit mine_trace(Ray ray) {\n"
                   "  Interval interval;\n  float clearance;\n  Hit hit;\n"
@@ -69,11 +70,16 @@ TEST_F(ConformCli, ATechniqueThatClaimsTooMuchIsCaughtWithItsRay) {
 }
 
 TEST_F(ConformCli, TheSameTechniqueWithoutTheClaimIsOnlyCounted) {
-  write_technique(coarse_search);
-  const ChildResult result = conform({"--techniques", "linear_search,exact"});
+  write_technique(coarse_search, "never");
+  const ChildResult result = conform({"--techniques", "mine,exact", "--json"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.out.find("linear_search"), std::string::npos);
-  EXPECT_NE(result.out.find("thin"), std::string::npos);
+  const auto json = nlohmann::json::parse(result.out, nullptr, false);
+  ASSERT_TRUE(json.contains("rows")) << result.out;
+  EXPECT_EQ(json["rows"].size(), 4u) << "two techniques, two address modes";
+  for (const auto& row : json["rows"]) {
+    EXPECT_FALSE(row.contains("fault")) << row;
+    EXPECT_EQ(row["missed"].get<int>() + row["wrong"].get<int>() > 0, row["technique"] == "mine") << row;
+  }
 }
 
 TEST_F(ConformCli, RunningOutOfStepsIsAFaultWhereTheCaseDoesNotAllowIt) {

@@ -60,7 +60,7 @@ TEST_P(EveryCertifiedMap, KeepsItsPromiseOnVulkan) {
   const Result<const MapDescriptor*> descriptor = registry().map(GetParam());
   ASSERT_TRUE(descriptor) << "a certifier without a map";
   for (const Case& test : cases_of(**descriptor)) {
-    const MapData map = baked(GetParam(), test.map, test.values);
+    const MapData map = baked(test.map, GetParam(), test.values);
     EXPECT_GE(map.bits, test.bits) << test.title;
     EXPECT_TRUE(map.bits == test.bits || has_exact_channel(**descriptor)) << test.title << ": " << map.bits;
     const Certificate certificate = certified(test.map, map, test.values);
@@ -77,7 +77,7 @@ TEST_P(EveryCertifiedMap, BreaksItsPromiseWhenItsTexelsAreMoved) {
   const Result<const MapDescriptor*> descriptor = registry().map(GetParam());
   ASSERT_TRUE(descriptor) << "a certifier without a map";
   const auto values = default_values(**descriptor);
-  MapData map = baked(GetParam(), height_map, values);
+  MapData map = baked(height_map, GetParam(), values);
   rotate_texels(map, 5 * static_cast<std::size_t>(map.channels));
   EXPECT_GT(certified(height_map, map, values).violations, 0U);
 }
@@ -95,7 +95,7 @@ TEST(Certify, ConesHoldAsFarAsTheyReachAtMost) {
     for (const Parameter& parameter : descriptor.parameters) {
       if (parameter.name == "reach") values[std::string(name) + ".reach"] = parameter.maximum;
     }
-    EXPECT_EQ(certified(spike, baked(name, spike, values), values).violations, 0U) << name;
+    EXPECT_EQ(certified(spike, baked(spike, name, values), values).violations, 0U) << name;
   }
 }
 

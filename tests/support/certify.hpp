@@ -1,7 +1,9 @@
 /// Baking and certifying in tests.
 #pragma once
 
+#include <map>
 #include <string>
+#include <vector>
 
 #include "relievo/certify.hpp"
 #include "support/height_maps.hpp"
@@ -10,14 +12,14 @@
 
 namespace relievo::test {
 
-/// The map as Vulkan bakes it, or an empty one and a failure.
-inline MapData baked(const std::string& name, const HeightMap& height_map,
-                     const std::map<std::string, double>& values = {}) {
+/// The map as Vulkan, or the backend that is named, bakes it; or an empty one and a failure.
+inline MapData baked(const HeightMap& height_map, const std::string& name,
+                     const std::map<std::string, double>& values = {}, const std::string& on = "vulkan") {
   MapSet maps = map_set(height_map);
   std::vector<std::string> messages;
-  const Status status = bake_map(backend("vulkan"), registry(), name, maps, values, &messages);
-  EXPECT_TRUE(status) << (status ? "" : format(status.error()));
-  EXPECT_THAT(messages, ::testing::IsEmpty());
+  const Status status = bake_map(backend(on), registry(), name, maps, values, &messages);
+  EXPECT_TRUE(status) << name << ": " << (status ? "" : format(status.error()));
+  EXPECT_THAT(messages, ::testing::IsEmpty()) << name;
   return status ? maps.at(name) : MapData{};
 }
 
@@ -33,6 +35,16 @@ inline Certificate certified(const HeightMap& height_map, const MapData& map,
   const Result<Certificate> certificate = certify(height_map, map, certify_options(values));
   EXPECT_TRUE(certificate) << (certificate ? "" : format(certificate.error()));
   return certificate ? *certificate : Certificate{};
+}
+
+/// The small maps with every address mode.
+inline std::vector<NamedMap> addressed_maps() {
+  std::vector<NamedMap> maps;
+  for (const NamedMap& base : small_maps()) {
+    for (AddressMode mode : all_address_modes)
+      maps.push_back({base.name + " " + std::string(to_string(mode)), with_address(base.map, mode)});
+  }
+  return maps;
 }
 
 /// Element of `channel` at texel (x, y) of a level, or of a layer of a 3D map.

@@ -12,7 +12,7 @@ TEST(CertifyDilationErosion, TheSurfaceAroundEveryCellLiesBetweenItsValues) {
   constexpr int radius = 2;
   for (const AddressMode mode : all_address_modes) {
     const HeightMap map = with_address(white_noise_map(7, 13), mode);
-    const MapData extremes = baked(name, map, radius_2);
+    const MapData extremes = baked(map, name, radius_2);
     Random random(3);
     for (int i = 0; i < 20000; ++i) {
       const int x = random.below(map.width), y = random.below(map.height);
@@ -26,7 +26,7 @@ TEST(CertifyDilationErosion, TheSurfaceAroundEveryCellLiesBetweenItsValues) {
 
 TEST(CertifyDilationErosion, ATexelThatBreaksThePromiseIsNamed) {
   const HeightMap map = white_noise_map(7, 13);
-  const MapData good = baked(name, map, radius_2);
+  const MapData good = baked(map, name, radius_2);
   const Certificate kept = certified(map, good, radius_2);
   EXPECT_EQ(kept.violations, 0U);
   EXPECT_EQ(kept.checked, 7U * 13U);
@@ -42,11 +42,11 @@ TEST(CertifyDilationErosion, ATexelThatBreaksThePromiseIsNamed) {
 
 TEST(CertifyDilationErosion, FaultsOfAWholeMapAreFound) {
   const HeightMap map = white_noise_map(64, 64);
-  const MapData good = baked(name, map, radius_2);
+  const MapData good = baked(map, name, radius_2);
   EXPECT_GT(certified(map, good, radius_3).violations, 1000U) << "its radius is smaller than it claims";
   EXPECT_GT(certified(map, good).violations, 1000U) << "the default is 4";
   EXPECT_GT(certified(map, rounded_to_nearest(good), radius_2).violations, 1000U);
-  EXPECT_GT(certified(map, baked(name, with_address(map, AddressMode::clamp), radius_2), radius_2).violations, 50U)
+  EXPECT_GT(certified(map, baked(with_address(map, AddressMode::clamp), name, radius_2), radius_2).violations, 50U)
       << "baked for another border";
   MapData shifted = good;
   rotate_texels(shifted, 2);
@@ -55,7 +55,7 @@ TEST(CertifyDilationErosion, FaultsOfAWholeMapAreFound) {
 
 TEST(CertifyDilationErosion, ARadiusThatCannotBeIsRefused) {
   const HeightMap map = white_noise_map(7, 13);
-  const MapData good = baked(name, map);
+  const MapData good = baked(map, name);
   for (const double radius : {0.0, 2.5, 1e9, -3.0, std::numeric_limits<double>::quiet_NaN()}) {
     const auto result = certify(map, good, certify_options({{"dilation_erosion.radius", radius}}));
     ASSERT_FALSE(result) << radius;
@@ -65,10 +65,10 @@ TEST(CertifyDilationErosion, ARadiusThatCannotBeIsRefused) {
 
 TEST(CertifyDilationErosion, ValuesOfTheTechniqueOfThatNameAreNotTheMaps) {
   const HeightMap map = white_noise_map(7, 13);
-  const MapData plain = baked(name, map, radius_2);
+  const MapData plain = baked(map, name, radius_2);
   std::map<std::string, double> both = radius_2;
   both["dilation_erosion.binary_steps"] = 3;
-  EXPECT_EQ(baked(name, map, both).texels, plain.texels);
+  EXPECT_EQ(baked(map, name, both).texels, plain.texels);
 }
 
 }  // namespace

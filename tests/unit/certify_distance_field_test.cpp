@@ -1,7 +1,7 @@
 /// Distance fields are nowhere too long, in all bits, with all address modes; and the certifier notices one that is.
 #include <gtest/gtest.h>
 
-#include "support/baked_maps.hpp"
+#include "support/certify.hpp"
 #include "support/hard_rays.hpp"
 
 namespace relievo::test {
@@ -10,7 +10,7 @@ namespace {
 using Values = std::map<std::string, double>;
 
 Certificate certified_field(const HeightMap& map, const MapData& field, const Values& values) {
-  return certified(map, field, {values});
+  return certified(map, field, values);
 }
 
 std::size_t index_of(const MapData& field, int x, int y, int layer) {

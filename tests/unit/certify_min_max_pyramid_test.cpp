@@ -9,7 +9,7 @@ constexpr const char* name = "min_max_pyramid";
 TEST(CertifyMinMaxPyramid, TheSurfaceLiesBetweenTheValuesOfEveryLevel) {
   for (const AddressMode mode : all_address_modes) {
     const HeightMap map = with_address(white_noise_map(7, 13), mode);
-    const MapData pyramid = baked(name, map);
+    const MapData pyramid = baked(map, name);
     Random random(3);
     for (int i = 0; i < 5000; ++i) {
       const SurfacePoint point = random_surface_point(map, random);
@@ -24,7 +24,7 @@ TEST(CertifyMinMaxPyramid, TheSurfaceLiesBetweenTheValuesOfEveryLevel) {
 
 TEST(CertifyMinMaxPyramid, TheTopIsTheLeastAndGreatestHeightAndNoLooser) {
   const HeightMap map = white_noise_map(7, 13);
-  const MapData pyramid = baked(name, map);
+  const MapData pyramid = baked(map, name);
   const auto [least, greatest] = std::minmax_element(map.texels.begin(), map.texels.end());
   EXPECT_EQ(pyramid.texels[element(pyramid, 0, 0, 0, pyramid.levels - 1)], *least);
   EXPECT_EQ(pyramid.texels[element(pyramid, 0, 0, 1, pyramid.levels - 1)], *greatest);
@@ -32,7 +32,7 @@ TEST(CertifyMinMaxPyramid, TheTopIsTheLeastAndGreatestHeightAndNoLooser) {
 
 TEST(CertifyMinMaxPyramid, ATexelThatBreaksThePromiseIsNamed) {
   const HeightMap map = white_noise_map(7, 13);
-  const MapData good = baked(name, map);
+  const MapData good = baked(map, name);
   const Certificate kept = certified(map, good);
   EXPECT_EQ(kept.violations, 0U);
   EXPECT_EQ(kept.checked, 7U * 13U * 5U) << "every cell in each of the levels of 8 x 16";
@@ -50,10 +50,10 @@ TEST(CertifyMinMaxPyramid, ATexelThatBreaksThePromiseIsNamed) {
 
 TEST(CertifyMinMaxPyramid, FaultsOfAWholeMapAreFound) {
   const HeightMap map = white_noise_map(7, 13);
-  const MapData good = baked(name, map);
+  const MapData good = baked(map, name);
   EXPECT_GT(certified(map, rounded_to_nearest(good)).violations, 50U);
   EXPECT_GT(certified(white_noise_map(7, 13, 2), good).violations, 50U) << "another height map's";
-  EXPECT_GT(certified(map, baked(name, with_address(map, AddressMode::clamp))).violations, 5U) << "its borders";
+  EXPECT_GT(certified(map, baked(with_address(map, AddressMode::clamp), name)).violations, 5U) << "its borders";
   MapData swapped = good;
   for (std::size_t i = 0; i < swapped.texels.size(); ++i) swapped.texels.set(i, good.texels[i ^ 1]);
   EXPECT_GT(certified(map, swapped).violations, 300U);
@@ -61,7 +61,7 @@ TEST(CertifyMinMaxPyramid, FaultsOfAWholeMapAreFound) {
 
 TEST(CertifyMinMaxPyramid, MapsOfAnotherShapeAndNumbersThatAreNoneAreRefused) {
   const HeightMap map = white_noise_map(7, 13);
-  MapData faulty = baked(name, map);
+  MapData faulty = baked(map, name);
   EXPECT_EQ(certify(white_noise_map(7, 17), faulty).error().id, "certify.shape");
   faulty.texels.set(element(faulty, 1, 1), std::numeric_limits<float>::quiet_NaN());
   EXPECT_EQ(certify(map, faulty).error().id, "certify.non-finite");

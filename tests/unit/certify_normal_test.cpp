@@ -10,7 +10,7 @@ TEST(CertifyNormal, FlatAndSteepMapsKeepThePromise) {
   for (const auto& [title, map] : small_maps()) {
     for (const double scale : {1e-6, 0.1, 1e4}) {
       const std::map<std::string, double> values = {{"normal.scale", scale}};
-      const Certificate certificate = certified(map, baked(name, map, values), values);
+      const Certificate certificate = certified(map, baked(map, name, values), values);
       EXPECT_EQ(certificate.violations, 0U) << title << " at scale " << scale << ": " << certificate.worst;
       EXPECT_EQ(certificate.checked, map.texels.size());
     }
@@ -19,7 +19,7 @@ TEST(CertifyNormal, FlatAndSteepMapsKeepThePromise) {
 
 TEST(CertifyNormal, ARampHasTheNormalOfItsSlope) {
   const HeightMap map = ramp_map(16, 8);
-  const MapData normals = baked(name, map);
+  const MapData normals = baked(map, name);
   const double slope = 0.1 * 16.0 / 15.0, size = std::sqrt(1 + slope * slope);
   EXPECT_NEAR(normals.texels[element(normals, 5, 3, 0)], -slope / size, 1e-6);
   EXPECT_EQ(normals.texels[element(normals, 5, 3, 1)], 0);
@@ -28,7 +28,7 @@ TEST(CertifyNormal, ARampHasTheNormalOfItsSlope) {
 
 TEST(CertifyNormal, ANormalThatDiffersIsNamed) {
   const HeightMap map = white_noise_map(7, 13);
-  const MapData good = baked(name, map);
+  const MapData good = baked(map, name);
   EXPECT_EQ(certified(map, good).violations, 0U);
   MapData longer = good, turned = good;
   const std::size_t x = element(good, 3, 4, 0);
@@ -44,9 +44,9 @@ TEST(CertifyNormal, ANormalThatDiffersIsNamed) {
 
 TEST(CertifyNormal, FaultsOfAWholeMapAreFound) {
   const HeightMap map = white_noise_map(7, 13);
-  const MapData good = baked(name, map);
+  const MapData good = baked(map, name);
   EXPECT_EQ(certified(map, good, {{"normal.scale", 0.2}}).violations, 7U * 13U) << "twice as high as it was baked";
-  EXPECT_GT(certified(map, baked(name, with_address(map, AddressMode::clamp))).violations, 20U) << "its borders";
+  EXPECT_GT(certified(map, baked(with_address(map, AddressMode::clamp), name)).violations, 20U) << "its borders";
   MapData inverted = good;
   for (std::size_t i = 0; i < inverted.texels.size(); i += 3) inverted.texels.set(i, -good.texels[i]);
   EXPECT_GT(certified(map, inverted).violations, 80U);

@@ -8,7 +8,7 @@ constexpr const char* name = "pyramid_3d";
 
 TEST(CertifyPyramid3d, LayersHoldTheLevelsOfTheMaximumPyramid) {
   const HeightMap map = white_noise_map(7, 13);
-  const MapData packed = baked(name, map), pyramid = baked("max_pyramid", map);
+  const MapData packed = baked(map, name), pyramid = baked(map, "max_pyramid");
   ASSERT_EQ(packed.dimension, MapDimension::volume);
   ASSERT_EQ(std::tuple(packed.width, packed.height, packed.depth), std::tuple(7, 13, 2));
   // Level 1 is 4 x 7; the others follow one another along v, beyond it.
@@ -28,7 +28,7 @@ TEST(CertifyPyramid3d, LevelsNeverOverlapOrLeaveTheMap) {
        {std::pair(1, 1), std::pair(1, 9), std::pair(9, 1), std::pair(2, 2), std::pair(5, 2), std::pair(2, 5),
         std::pair(5, 4), std::pair(3, 3), std::pair(33, 20)}) {
     const HeightMap map = white_noise_map(width, height);
-    const Certificate certificate = certified(map, baked(name, map));
+    const Certificate certificate = certified(map, baked(map, name));
     EXPECT_EQ(certificate.violations, 0U) << width << " x " << height;
     if (std::min(width, height) == 1) continue;
     const auto levels = static_cast<unsigned>(std::bit_width(static_cast<unsigned>(std::max(width, height) - 1))) + 1;
@@ -38,7 +38,7 @@ TEST(CertifyPyramid3d, LevelsNeverOverlapOrLeaveTheMap) {
 
 TEST(CertifyPyramid3d, ATexelThatBreaksThePromiseIsNamed) {
   const HeightMap map = white_noise_map(7, 13);
-  const MapData good = baked(name, map);
+  const MapData good = baked(map, name);
   EXPECT_EQ(certified(map, good).violations, 0U);
   MapData faulty = good;
   const std::size_t node = element(faulty, 5, 1, 0, 0, 1);  // (1, 1) of level 2
@@ -51,7 +51,7 @@ TEST(CertifyPyramid3d, ATexelThatBreaksThePromiseIsNamed) {
 
 TEST(CertifyPyramid3d, FaultsOfAWholeMapAreFound) {
   const HeightMap map = white_noise_map(7, 13);
-  const MapData good = baked(name, map);
+  const MapData good = baked(map, name);
   EXPECT_GT(certified(map, rounded_to_nearest(good)).violations, 50U);
   EXPECT_GT(certified(white_noise_map(7, 13, 2), good).violations, 50U) << "another height map's";
   MapData swapped = good;

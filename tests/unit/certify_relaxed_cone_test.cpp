@@ -2,7 +2,7 @@
 /// notices cones that reach beyond.
 #include <gtest/gtest.h>
 
-#include "support/baked_maps.hpp"
+#include "support/certify.hpp"
 
 namespace relievo::test {
 namespace {

@@ -6,7 +6,7 @@ namespace {
 
 TEST(CertifyRisePyramid, TheTopHasTheLeastRiseOfTheMap) {
   const HeightMap map = with_address(white_noise_map(7, 13), AddressMode::repeat);
-  const MapData pyramid = baked("rise_pyramid", map);
+  const MapData pyramid = baked(map, "rise_pyramid");
   float least = 1;
   for (int y = 0; y < map.height; ++y) {
     for (int x = 0; x < map.width; ++x) least = std::min(least, map.at((x + 1) % 7, y) - map.at(x, y));
@@ -16,13 +16,13 @@ TEST(CertifyRisePyramid, TheTopHasTheLeastRiseOfTheMap) {
 
 TEST(CertifyRisePyramid, BeyondAnEdgeTheSurfaceGoesOnAsTheAddressModeSays) {
   const HeightMap map = constant_map(4, 4, 0.5);
-  EXPECT_EQ(baked("rise_pyramid", with_address(map, AddressMode::clamp)).texels[1], 0.0f);
-  EXPECT_EQ(baked("rise_pyramid", with_address(map, AddressMode::mirror)).texels[1], -0.5f) << "falls to the base";
+  EXPECT_EQ(baked(with_address(map, AddressMode::clamp), "rise_pyramid").texels[1], 0.0f);
+  EXPECT_EQ(baked(with_address(map, AddressMode::mirror), "rise_pyramid").texels[1], -0.5f) << "falls to the base";
 }
 
 TEST(CertifyRisePyramid, ANodeThatSaysTooMuchIsNamed) {
   const HeightMap map = white_noise_map(7, 13);
-  const MapData good = baked("rise_pyramid", map);
+  const MapData good = baked(map, "rise_pyramid");
   EXPECT_EQ(certified(map, good).checked, 7U * 13U * 4U * 3U)
       << "every texel's four rises in each of the levels of 2 x 4";
   for (int channel = 0; channel < 4; ++channel) {
@@ -36,11 +36,11 @@ TEST(CertifyRisePyramid, ANodeThatSaysTooMuchIsNamed) {
 }
 
 TEST(CertifyRisePyramid, OtherShapesAreRefused) {
-  const MapData pyramid = baked("rise_pyramid", white_noise_map(7, 13));
+  const MapData pyramid = baked(white_noise_map(7, 13), "rise_pyramid");
   EXPECT_EQ(std::pair(pyramid.width, pyramid.height), std::pair(2, 4)) << "for 8 x 16";
   EXPECT_EQ(pyramid.levels, 3);
   EXPECT_EQ(certify(white_noise_map(9, 13), pyramid).error().id, "certify.shape");
-  EXPECT_EQ(baked("rise_pyramid", white_noise_map(1, 1)).levels, 1);
+  EXPECT_EQ(baked(white_noise_map(1, 1), "rise_pyramid").levels, 1);
 }
 
 }  // namespace

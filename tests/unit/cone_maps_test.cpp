@@ -4,19 +4,13 @@
 
 #include <fmt/format.h>
 
-#include "support/baked_maps.hpp"
+#include "support/certify.hpp"
 #include "support/rotate_texels.hpp"
 
 namespace relievo::test {
 namespace {
 
 using Values = std::map<std::string, double>;
-
-CertifyOptions options_of(const Values& values) {
-  CertifyOptions options;
-  options.values = values;
-  return options;
-}
 
 std::vector<NamedMap> heights() {
   return {{"1x1", constant_map(1, 1, 0.3)}, {"1x9", white_noise_map(1, 9)},      {"9x1", white_noise_map(9, 1)},
@@ -28,7 +22,7 @@ void expect_kept(const std::string& name, const Values& values) {
   for (const auto& [title, height] : heights()) {
     for (AddressMode mode : all_address_modes) {
       const HeightMap addressed = with_address(height, mode);
-      const Certificate certificate = certified(addressed, baked(addressed, name, values), options_of(values));
+      const Certificate certificate = certified(addressed, baked(addressed, name, values), values);
       EXPECT_GE(certificate.checked, addressed.texels.size());
       EXPECT_EQ(certificate.violations, 0U)
           << fmt::format("{} {} {}: {} at {}, {}, layer {}", name, title, to_string(mode), certificate.worst,
@@ -54,7 +48,7 @@ TEST(ConeMaps, ConesHoldAsFarAsTheyReach) {
   const HeightMap height = spike_map(660, 3);
   for (const std::string name : {"robust_cone", "directional_cone"}) {
     const Values values = {{name + ".bits", 32}, {name + ".reach", 318}};
-    EXPECT_EQ(certified(height, baked(height, name, values), options_of(values)).violations, 0U) << name;
+    EXPECT_EQ(certified(height, baked(height, name, values), values).violations, 0U) << name;
   }
 }
 
@@ -66,7 +60,7 @@ TEST(ConeMaps, AConeThatIsTooNarrowByAStepIsCaught) {
       MapData map = baked(height, name, values);
       for (std::size_t i = static_cast<std::size_t>(channel); i < map.texels.size(); i += 3)
         map.texels.set(i, map.texels[i] - (channel == 2 ? 4.0f : 1.0f) / 255.0f);
-      EXPECT_GT(certified(height, map, options_of(values)).violations, 100U) << name << ", channel " << channel;
+      EXPECT_GT(certified(height, map, values).violations, 100U) << name << ", channel " << channel;
     }
   }
 }

@@ -85,6 +85,18 @@ TEST_F(CertifyCli, OneLoweredTexelIsFoundAndNamed) {
   EXPECT_EQ(certify({"--map", path("p.pfm"), "--tolerance", "0.6"}).exit_code, 0);
 }
 
+TEST_F(CertifyCli, MapsThatNobodyCertifiesOrThatAreOthersAreRefused) {
+  const ChildResult unknown = run_relievo({"certify", "cell_corners", "--height", path("height.pfm")});
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_NE(unknown.err.find("[certify.unknown]"), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("'cell_corners'"), std::string::npos) << unknown.err;
+  bake("p.exr");
+  const ChildResult other = run_relievo({"certify", "cone", "--height", path("height.pfm"), "--map", path("p.exr")});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_NE(other.err.find("[certify.other-map]"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("holds map 'max_pyramid'; expected 'cone'"), std::string::npos) << other.err;
+}
+
 TEST_F(CertifyCli, FilesThatAreNotThatMapAreRefused) {
   bake("p.exr");
   expect_refused({"--map", path("p.exr"), "--address", "clip"}, {"p.exr", "clip", "repeat"});

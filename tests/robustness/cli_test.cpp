@@ -106,11 +106,17 @@ TEST_F(Cli, GoodInputSucceeds) {
   write_technique("", good_glsl);
   EXPECT_EQ(run_relievo(compile_user()).exit_code, 0);
   EXPECT_EQ(run_relievo({"--help"}).exit_code, 0);
-  for (const char* command :
-       {"list", "describe", "compile", "bake", "certify", "trace", "render", "bench", "conform"}) {
-    const ChildResult help = run_relievo({command, "--help"});
-    EXPECT_EQ(help.exit_code, 0) << command;
-    EXPECT_NE(help.out.find("--json"), std::string::npos) << command;
+  using Words = std::vector<std::string>;
+  for (Words command :
+       {Words{"list"}, Words{"describe"}, Words{"compile"}, Words{"bake"}, Words{"certify"}, Words{"trace"},
+        Words{"render"}, Words{"bench"}, Words{"conform"}, Words{"permute"}, Words{"report"}, Words{"archive", "list"},
+        Words{"archive", "find"}, Words{"archive", "verify"}, Words{"archive", "merge"}, Words{"cache", "stats"},
+        Words{"cache", "verify"}, Words{"cache", "clear"}}) {
+    SCOPED_TRACE(command.front() + " " + command.back());
+    command.push_back("--help");
+    const ChildResult help = run_relievo(command);
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_NE(help.out.find("--json"), std::string::npos) << help.out;
   }
 }
 
@@ -152,6 +158,15 @@ TEST_F(Cli, UnknownNamesAreAnsweredWithTheNearest) {
   expect_refused({"trase"}, 1, {"trase"});
   expect_refused({}, 1, {"subcommand"});
   expect_refused({"trace"}, 1, {"--height"});
+}
+
+TEST_F(Cli, TechniquesAndFormatsThatATraceOrPictureCannotHaveAreSaid) {
+  const auto h = path("height.pfm"), r = path("rays.csv");
+  expect_refused({"trace", "--height", h, "--rays", r}, 1, {"[trace.no-technique]", "--technique NAME"});
+  expect_refused({"trace", "--technique", "oracle", "--height", h, "--rays", r}, 1,
+                 {"[trace.oracle]", "--backend oracle"});
+  expect_refused({"render", path("scene.toml"), "--technique", "relief", "-o", path("p.tiff")}, 1,
+                 {"[render.format]", ".tiff", ".png or .exr"});
 }
 
 TEST_F(Cli, RaysThatAreNone) {
@@ -333,7 +348,7 @@ TEST_F(Cli, PipesAndLinksAreWrittenAndNotReplaced) {
 const std::string program = RELIEVO_BINARY_DIR "/bin/relievo";
 
 TEST_F(Cli, WhatCannotBePrintedIsNoSuccess) {
-  const ChildResult full = run_child("/bin/sh", {"-c", program + " list --json > /dev/full"});
+  const ChildResult full = run_child("/bin/sh", {"-c", "\"$0\" list --json > /dev/full", program});
   EXPECT_EQ(full.exit_code, 1);
   EXPECT_NE(full.err.find("cli.write"), std::string::npos) << full.err;
 }
@@ -342,9 +357,9 @@ TEST_F(Cli, WithoutMemoryThereIsASentence) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "a sanitizer's shadow memory is beyond any limit";
 #endif
-  const ChildResult starved =
-      run_child("/bin/sh", {"-c", "ulimit -v 1500000; exec " + program +
-                                      " trace --technique relief --height /dev/zero --rays " + path("rays.csv")});
+  const ChildResult starved = run_child(
+      "/bin/sh", {"-c", "ulimit -v 1500000; exec \"$0\" trace --technique relief --height /dev/zero --rays \"$1\"",
+                  program, path("rays.csv")});
   EXPECT_EQ(starved.signal, 0);
   EXPECT_EQ(starved.exit_code, 1);
   EXPECT_NE(starved.err.find("image.memory"), std::string::npos) << starved.err;

@@ -89,5 +89,26 @@ TEST(MapTexels, ChannelsAreRoundedByTheirOwnRules) {
   EXPECT_EQ(map.texels, MapTexels(MapTexels::Values(std::vector<std::uint8_t>{128, 127, 128, 26, 25, 26})));
 }
 
+TEST(MapTexels, ValuesBeyondOneAreNotQuantised) {
+  const std::vector<Rounding> rounding(3, Rounding::nearest);
+  for (const float value : {1.5f, -0.25f}) {
+    MapData map = three_channels(std::vector<float>{0.5f, 0.5f, 0.5f, 0.1f, value, 0.1f}, 32);
+    const Status refused = quantise(map, 8, rounding);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().id, "maps.range");
+    EXPECT_NE(refused.error().message.find("at element 4"), std::string::npos) << refused.error().message;
+    EXPECT_TRUE(quantise(map, 32, rounding)) << "floats have no range";
+  }
+}
+
+TEST(MapTexels, AHeightFormatThatNobodyHasIsRefused) {
+  const MapData height = map_set(HeightMap{1, 1, {0.5f}}).at("height");
+  for (const char* format : {"red", "alpha", "red_green"}) EXPECT_TRUE(height_texture(height, format)) << format;
+  const Result<Texture> refused = height_texture(height, "blue");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().id, "maps.height-format");
+  EXPECT_NE(refused.error().message.find("'blue'"), std::string::npos) << refused.error().message;
+}
+
 }  // namespace
 }  // namespace relievo

@@ -36,10 +36,17 @@ inline std::string contradiction_of(const Archive& archive) {
     is_whole = is_whole && archive.reflection(entry) && archive.cost(entry);
     if (archive.load(entry).has_value() != is_whole) return "a program differs from its parts";
     if (archive.verify() && !is_whole) return "damage is not seen";
-    for (const auto& [target, reason] : archive.absent(entry))
-      if (!archive.output(entry, ShaderStage::geometry, target) && reason.size() > (std::size_t{1} << 32))
-        return "size";
-    archive.stages(entry);
+    const std::vector<ShaderStage> stages = archive.stages(entry);
+    if (stages.empty() != archive.outputs(entry).empty()) return "stages and outputs disagree";
+    for (const auto& [target, reason] : archive.absent(entry)) {
+      for (const ShaderStage stage : stages) {
+        const auto output = archive.output(entry, stage, target);
+        // The sentence has every byte of the reason.
+        if (!output && output.error().id == "archive.no-output" &&
+            output.error().message.find(reason) == std::string::npos)
+          return "an absent target's reason is not told";
+      }
+    }
   }
   return {};
 }

@@ -93,6 +93,15 @@ inline std::string archive_bytes(const SampleArchive& sample) {
   return TemporaryFolder::read(folder / "a.rva");
 }
 
+/// What tests/fuzz/corpus holds of these formats, by its path there.
+inline std::map<std::string, std::string> stored_inputs() {
+  return {{"archive/sample.rva", archive_bytes(sample_archive())},
+          {"archive/empty.rva", archive_bytes({sample_axes(), {}})},
+          {"archive/no_axes.rva", archive_bytes({{}, {{{}, ProgramImage{}, {{kMsl, "no"}}}}})},
+          {"program/sample.rvp", write_program(sample_program("stored"))},
+          {"program/empty.rvp", write_program({})}};
+}
+
 /// Bytes at an address that is a multiple of 8.
 class AlignedBytes {
  public:
@@ -124,6 +133,13 @@ inline std::string fault_of(const Archive& archive, const SampleArchive& sample,
     for (const auto& [target, reason] : archive.absent(entry))
       absent += std::ranges::count(expected.absent, std::pair(target, std::string(reason)));
     if (absent != expected.absent.size() || archive.absent(entry).size() != absent) return "other absent targets";
+    for (const auto& [target, reason] : expected.absent) {
+      for (const ShaderStage stage : archive.stages(entry)) {
+        const auto output = archive.output(entry, stage, target);
+        if (output) return "an absent target has an output";
+        if (output.error().message.find(reason) == std::string::npos) return "the reason of an absence is not told";
+      }
+    }
     if (archive.outputs(entry).size() != expected.program.outputs.size()) return "another number of outputs";
     for (const ProgramOutput& output : expected.program.outputs) {
       const auto bytes = archive.output(entry, output.stage, output.target);

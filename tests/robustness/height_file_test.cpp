@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <bit>
 #include <cstdlib>
@@ -253,12 +254,42 @@ TEST(HeightFileFaults, WrongArraysAreNamed) {
   expect_error(folder.write("crc.npz", broken), "image.corrupt", "in its array 'a.npy'");
 }
 
-TEST(HeightFileFaults, GzipInGzipAndBombsAreRejected) {
+TEST(HeightFileFaults, GzipInGzipAndGzipOfNothingKnownAreRejected) {
   const TemporaryFolder folder;
   expect_error(folder.write("a.gz", gzip(gzip("x"))), "image.format", "gzipped twice");
   expect_error(folder.write("b.gz", gzip("hello")), "image.format", "no known format");
   expect_error(folder.write("c.gz", ByteString("\x1f\x8b\x08\0\0\0\0\0\0\xff\x07", 11) + "nonsense"), "image.corrupt",
                "does not unpack");
+}
+
+/// Zeros, deflated to a thousandth of their size.
+ByteString gzip_of_zeros(std::size_t count) {
+  z_stream stream = {};
+  if (deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 9, Z_DEFAULT_STRATEGY) != Z_OK) return {};
+  std::vector<Bytef> zeros(1u << 20), packed(1u << 20);
+  ByteString file;
+  for (int status = Z_OK; status != Z_STREAM_END;) {
+    if (stream.avail_in == 0) {
+      stream.next_in = zeros.data();
+      stream.avail_in = static_cast<uInt>(std::min(count, zeros.size()));
+      count -= stream.avail_in;
+    }
+    stream.next_out = packed.data();
+    stream.avail_out = static_cast<uInt>(packed.size());
+    status = deflate(&stream, count == 0 ? Z_FINISH : Z_NO_FLUSH);
+    file.append(packed.begin(), packed.end() - stream.avail_out);
+  }
+  deflateEnd(&stream);
+  return file;
+}
+
+/// Long: what may be unpacked is a GiB, and held.
+TEST(LongHeightFileFaults, AGzipBombIsRejected) {
+  const TemporaryFolder folder;
+  const std::size_t most = std::size_t{max_image_extent} * max_image_extent * 4 + (1u << 20);
+  const std::filesystem::path bomb = folder.write("bomb.gz", gzip_of_zeros(4 * most));
+  EXPECT_LT(std::filesystem::file_size(bomb), most / 100);
+  expect_error(bomb, "image.size", "unpacks to more than the " + std::to_string(most) + " bytes");
 }
 
 }  // namespace

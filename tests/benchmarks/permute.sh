@@ -16,9 +16,10 @@ measure() {
   shift
   /usr/bin/env time -f '%e %U %S %M' -o "$work/$name.time" "$@" >"$work/$name.out" 2>&1 || { cat "$work/$name.out"; exit 1; }
   read -r wall user system peak <"$work/$name.time"
-  printf '%-34s %8.2f s wall %8.2f s CPU %6d MiB\n' "$name" "$wall" "$(bc <<<"$user + $system")" $((peak / 1024))
+  printf '%-34s %8.2f s wall %8.2f s CPU %6d MiB\n' "$name" "$wall" "$(compute "$user + $system")" $((peak / 1024))
 }
 wall_of() { cut -d' ' -f1 "$work/$1.time"; }
+compute() { awk "BEGIN { print $1 }"; }
 
 cores=$(nproc)
 measure cold_$cores "$relievo" permute "$manifest" -o "$work/cold" -j "$cores" --cache "$work/cache"
@@ -53,9 +54,9 @@ measure six_processes bash -euo pipefail -c six_processes
 
 programs=$(sed -n 's/.* \([0-9]*\) programs.*/\1/p' "$work/cold_$cores.out")
 compiled=$(find "$work/sources" -mindepth 1 -maxdepth 1 -type d | wc -l)
-ours=$(bc -l <<<"1000 * $(wall_of cold_${cores}_no_cache) / $programs")
-theirs=$(bc -l <<<"1000 * $(wall_of six_processes) / $compiled")
+ours=$(compute "1000 * $(wall_of cold_${cores}_no_cache) / $programs")
+theirs=$(compute "1000 * $(wall_of six_processes) / $compiled")
 printf 'a unique permutation: %.1f ms here, %.1f ms by the packaged tools (%d of them): %.1f times faster\n' \
-  "$ours" "$theirs" "$compiled" "$(bc -l <<<"$theirs / $ours")"
+  "$ours" "$theirs" "$compiled" "$(compute "$theirs / $ours")"
 printf '%d threads over one: %.2f times faster\n' "$cores" \
-  "$(bc -l <<<"$(wall_of cold_1) / $(wall_of cold_${cores}_no_cache)")"
+  "$(compute "$(wall_of cold_1) / $(wall_of cold_${cores}_no_cache)")"

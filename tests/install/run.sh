@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs a built tree (default build/release) into a fresh prefix, moves the prefix, and builds and runs a consumer
-# against it twice: found by CMake, and found by pkg-config.
+# Installs a built tree (default build/release) into a fresh prefix, moves the prefix to a folder with a space in its
+# name, and builds and runs a consumer against it twice: found by CMake, and found by pkg-config.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -11,10 +11,11 @@ trap 'rm -rf "$work"' EXIT
 fail() { echo "install test: $*" >&2; exit 1; }
 
 cmake --install "$build" --prefix "$work/first" >/dev/null
-mv "$work/first" "$work/prefix"
-prefix=$work/prefix
-libdir=$(dirname "$(find "$prefix" -name librelievo.so)")
-[ -n "$libdir" ] || fail "the library is not installed"
+prefix="$work/the prefix"
+mv "$work/first" "$prefix"
+library=$(find "$prefix" -name librelievo.so)
+[ -n "$library" ] || fail "the library is not installed"
+libdir=$(dirname "$library")
 
 # A path of the build machine in an installed file breaks the package elsewhere.
 for path in "$root" "$build" "$work/first"; do
@@ -33,12 +34,11 @@ cmake --build "$work/cmake" >/dev/null || cmake --build "$work/cmake"
 
 echo "found by pkg-config:"
 export PKG_CONFIG_PATH=$libdir/pkgconfig
-read -ra flags <<<"$(pkg-config --cflags --libs relievo)"
+eval "flags=($(pkg-config --cflags --libs relievo))" # it escapes spaces for a shell
 "${CXX:-c++}" -std=c++20 "$here/consumer.cpp" "${flags[@]}" -Wl,-rpath,"$libdir" -o "$work/consumer"
 "$work/consumer"
 
-if [ -x "$prefix/bin/relievo" ]; then
-  echo "the installed program:"
-  "$prefix/bin/relievo" list >/dev/null || fail "the installed program does not list its techniques"
-  echo "lists its techniques"
-fi
+echo "the installed program:"
+[ -x "$prefix/bin/relievo" ] || fail "the program is not installed"
+"$prefix/bin/relievo" list >/dev/null || fail "the installed program does not list its techniques"
+echo "lists its techniques"

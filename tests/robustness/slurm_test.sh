@@ -12,7 +12,7 @@ for program in munged slurmctld slurmd sbatch squeue scontrol; do
   command -v $program >/dev/null || { echo "$program is not installed; tests/packages.txt names slurm-wlm and munge" >&2; exit 1; }
 done
 
-temporary=$(mktemp -d "${TMPDIR:-/tmp}/relievo-slurm-XXXXXX")
+temporary=$(mktemp -d /tmp/relievo-slurm-XXXXXX) # slurm.conf takes no spaces, which TMPDIR may have
 chmod 755 "$temporary" # munged's user passes through
 pids=()
 

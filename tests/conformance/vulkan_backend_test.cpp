@@ -11,6 +11,7 @@
 #include <iostream>
 
 #include "job/recent_programs.hpp"
+#include "support/files.hpp"
 #include "support/jobs.hpp"
 
 namespace relievo {
@@ -351,12 +352,7 @@ TEST(VulkanErrors, TheBackendStaysUsableAfterAnError) {
 /// A folder of its own that goes away with the test.
 class VulkanPipelineCache : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("relievo-cache-" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-    options_.pipeline_cache = (folder_ / "pipelines.bin").string();
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  VulkanPipelineCache() { options_.pipeline_cache = (folder_ / "pipelines.bin").string(); }
 
   void run_once() {
     const auto result = open_vulkan(options_)->execute(squares_job());
@@ -364,13 +360,10 @@ class VulkanPipelineCache : public testing::Test {
     EXPECT_THAT(result->messages, IsEmpty());
     EXPECT_THAT(from_bytes<std::uint32_t>(result->read_backs[0]), ElementsAre(0, 1, 4, 9));
   }
-  std::string contents() const {
-    std::ifstream file(options_.pipeline_cache, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string contents() const { return test::TemporaryFolder::read(options_.pipeline_cache); }
   void overwrite(const std::string& bytes) const { std::ofstream(options_.pipeline_cache, std::ios::binary) << bytes; }
 
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
   BackendOptions options_;
 };
 
@@ -380,7 +373,7 @@ TEST_F(VulkanPipelineCache, IsWrittenAndReadWithoutLeavingOtherFiles) {
   EXPECT_GT(first.size(), 32u);
   run_once();
   EXPECT_EQ(contents(), first);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+  EXPECT_EQ(static_cast<int>(folder_.count()), 1);
 }
 
 TEST_F(VulkanPipelineCache, IgnoresADamagedFileAndReplacesIt) {
@@ -397,10 +390,10 @@ TEST_F(VulkanPipelineCache, IgnoresADamagedFileAndReplacesIt) {
 }
 
 TEST_F(VulkanPipelineCache, SaysWhenItCannotBeWritten) {
-  options_.pipeline_cache = (folder_ / "missing" / "pipelines.bin").string();
+  options_.pipeline_cache = (folder_ / "missing/pipelines.bin").string();
   const auto result = open_vulkan(options_)->execute(squares_job());
   ASSERT_TRUE(result);
-  EXPECT_THAT(result->messages, ElementsAre(HasSubstr("cannot be written to")));
+  EXPECT_THAT(result->messages, ElementsAre(HasSubstr("'pipelines.bin' cannot be written")));
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ TEST(CacheProcesses, ReaderDuringWritesSeesWholeEntries) {
   EXPECT_EQ(cache->counts().broken, 0u);
 }
 
-/// How a writer puts its bytes into the cache; false when it cannot.
+/// How a writer puts its bytes into the cache.
 using Store = void (*)(Cache& cache, const fs::path& folder, std::uint64_t number);
 
 void store_whole(Cache& cache, const fs::path&, std::uint64_t number) {

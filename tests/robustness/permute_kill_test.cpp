@@ -28,7 +28,7 @@ std::vector<fs::path> entries_of(const std::string& cache) {
   return entries;
 }
 
-/// A run is cold (from nothing), half warm (with half of the cache), or writes the archive alone.
+/// How the runs ended, and what they left: stray files at most after one, and after the whole runs that followed.
 struct Killings {
   int killed = 0, finished = 0, wrong = 0, most_strays = 0, left_strays = 0, torn = 0;
 };

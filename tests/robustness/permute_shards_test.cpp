@@ -136,7 +136,7 @@ class PermuteMerge : public ::testing::Test {
     EXPECT_EQ(project_.archive("merged"), single_);
     EXPECT_TRUE(strays(project_ / "merged").empty());
   }
-  /// The parts of the manifest as it is now, without the stamps that tell where they are from.
+  /// The small manifest with other words for some of its own.
   void rewrite_manifest(const std::string& from, const std::string& to) {
     std::string text = small_manifest();
     text.replace(text.find(from), from.size(), to);

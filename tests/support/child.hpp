@@ -23,7 +23,7 @@ struct ChildResult {
   std::string out, err;
 };
 
-/// Runs `program` to its end, in `folder` where one is given, with `variables` added to the environment.
+/// Runs `program` to its end, with `variables` added to the environment and `input` to read.
 inline ChildResult run_child(const std::string& program, const std::vector<std::string>& arguments,
                              const std::map<std::string, std::string>& variables = {}, const std::string& input = {}) {
   const TemporaryFolder streams;

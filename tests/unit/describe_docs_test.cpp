@@ -1,23 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
+#include "support/files.hpp"
 #include "unit/describe_examples.hpp"
 
 namespace relievo {
 namespace {
 
-std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-const std::string docs = read_text(RELIEVO_SOURCE_DIR "/docs/descriptors.md");
+const std::string docs = test::TemporaryFolder::read(RELIEVO_SOURCE_DIR "/docs/descriptors.md");
 
 /// The first ```toml block after the heading.
 std::string example(const std::string& heading) {
@@ -66,7 +58,7 @@ TEST(DescriptorDocs, NameEveryErrorOfTheSources) {
   const std::set<std::string> documented = ids_of(docs, '`');
   std::set<std::string> raised;
   for (const auto& entry : std::filesystem::directory_iterator(RELIEVO_SOURCE_DIR "/sdk/src/describe")) {
-    raised.merge(ids_of(read_text(entry.path()), '"'));
+    raised.merge(ids_of(test::TemporaryFolder::read(entry.path()), '"'));
   }
   raised.erase("describe.unknown-");  // ends in the kind, which a test of the look-ups sees
   EXPECT_GE(raised.size(), 10u);

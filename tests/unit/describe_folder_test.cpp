@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "support/files.hpp"
 #include "unit/describe_examples.hpp"
 
 namespace relievo {
@@ -23,16 +24,6 @@ module = "template_technique.glsl"
 /// Each test has a folder of its own, removed at the end.
 class LoadRegistryFromFolder : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    root =
-        fs::temp_directory_path() / ("relievo_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +
-                                     "_" + test->name() + "_" + std::to_string(reinterpret_cast<std::uintptr_t>(this)));
-    fs::remove_all(root);
-    fs::create_directories(root);
-  }
-  void TearDown() override { fs::remove_all(root); }
-
   void write(const std::string& path, std::string_view text) {
     fs::create_directories((root / path).parent_path());
     std::ofstream(root / path, std::ios::binary) << text;
@@ -43,7 +34,8 @@ class LoadRegistryFromFolder : public testing::Test {
   }
   std::string on_disk(const std::string& path) { return (root / path).generic_string(); }
 
-  fs::path root;
+  const test::TemporaryFolder temporary;
+  const fs::path root = temporary.path();
 };
 
 TEST_F(LoadRegistryFromFolder, AddsATechniqueAndNothingElse) {

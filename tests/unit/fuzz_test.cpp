@@ -6,16 +6,14 @@
 #include <set>
 
 #include "evaluation/fuzz.hpp"
+#include "support/pipeline.hpp"
 
 namespace relievo::cli {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-const Registry& registry() {
-  static const Registry loaded = *load_registry();
-  return loaded;
-}
+using test::registry;
 
 bool same(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));

@@ -187,18 +187,18 @@ TEST(WeldPositions, NeighboursOrderTheirEdgesAlikeInAnyVertexOrder) {
   for (std::size_t i = 0; i < other_ids.size(); ++i) EXPECT_EQ(id_at.at(other.positions[i]), other_ids[i]);
 }
 
-TEST(WeldNormals, ClosesACubeWithFlatNormals) {
-  Mesh cube = make_sphere(1, 4, 2);  // an octahedron, each face with its own normal
-  Mesh flat;
-  for (const auto& [a, b, c] : cube.triangles) {
+TEST(WeldNormals, ClosesAnOctahedronWithFlatNormals) {
+  const Mesh octahedron = make_sphere(1, 4, 2);
+  Mesh flat;  // each face with its own normal
+  for (const auto& [a, b, c] : octahedron.triangles) {
     const auto first = static_cast<std::uint32_t>(flat.positions.size());
-    const glm::dvec3 p = to_double(cube.positions[a]);
-    const auto normal =
-        to_float(glm::normalize(glm::cross(to_double(cube.positions[b]) - p, to_double(cube.positions[c]) - p)));
+    const glm::dvec3 p = to_double(octahedron.positions[a]);
+    const auto normal = to_float(
+        glm::normalize(glm::cross(to_double(octahedron.positions[b]) - p, to_double(octahedron.positions[c]) - p)));
     for (const auto i : {a, b, c}) {
-      flat.positions.push_back(cube.positions[i]);
+      flat.positions.push_back(octahedron.positions[i]);
       flat.normals.push_back(normal);
-      flat.uvs.push_back(cube.uvs[i]);
+      flat.uvs.push_back(octahedron.uvs[i]);
     }
     flat.triangles.push_back({first, first + 1, first + 2});
   }

@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <spirv_cross/spirv.hpp>
-#include <sstream>
 #include <thread>
 
 #include "compile/front_end.hpp"
@@ -14,6 +12,7 @@
 #include "permute/freeze.hpp"
 #include "permute/shards.hpp"
 #include "support/files.hpp"
+#include "support/pipeline.hpp"
 
 namespace relievo::test {
 namespace {
@@ -25,13 +24,6 @@ constexpr const char* small =
     "[axes.\"relief.linear_steps\"]\nvalues = [29753, 31357]\nbinding = \"specialization\"\n"
     "[axes.\"relief.binary_steps\"]\nvalues = [4, 8]\n";
 
-std::string read(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  return bytes.str();
-}
-
 /// A run of the manifest into `path`.
 Result<PermuteSummary> run(const Registry& registry, const std::string& text, const std::filesystem::path& path,
                            const PermuteOptions& options = {}) {
@@ -40,11 +32,6 @@ Result<PermuteSummary> run(const Registry& registry, const std::string& text, co
   const auto plan = plan_permutations(registry, *manifest);
   if (!plan) return tl::unexpected(plan.error());
   return permute(registry, *manifest, *plan, path, options);
-}
-
-const Registry& registry() {
-  static const Registry loaded = *load_registry();
-  return loaded;
 }
 
 using Assignment = std::vector<std::pair<std::string_view, std::string_view>>;
@@ -64,7 +51,7 @@ TEST(Permute, RunsAtOnceMayWriteOneArchive) {
   for (int i = 0; i < 3; ++i) runs.emplace_back([&] { EXPECT_TRUE(run(registry(), small, folder / "small.rla")); });
   for (std::thread& thread : runs) thread.join();
   ASSERT_TRUE(run(registry(), small, folder / "alone.rla"));
-  EXPECT_EQ(read(folder / "small.rla"), read(folder / "alone.rla"));
+  EXPECT_EQ(TemporaryFolder::read(folder / "small.rla"), TemporaryFolder::read(folder / "alone.rla"));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2) << "something is left behind";
 }
 
@@ -121,7 +108,7 @@ TEST(Permute, WritesTheSameBytesWhateverTheThreadsTheCacheAndTheShards) {
   PermuteOptions options;
   options.threads = 1;
   ASSERT_TRUE(run(registry(), small, at("one"), options));
-  const std::string bytes = read(at("one"));
+  const std::string bytes = TemporaryFolder::read(at("one"));
   CacheOptions cache_options;
   cache_options.folder = at("cache");
   const auto cache = open_cache(cache_options);
@@ -132,7 +119,7 @@ TEST(Permute, WritesTheSameBytesWhateverTheThreadsTheCacheAndTheShards) {
     const auto summary = run(registry(), small, at("more"), options);
     ASSERT_TRUE(summary);
     EXPECT_EQ(summary->from_cache, threads == 2 ? 0u : summary->closures);
-    EXPECT_EQ(read(at("more")), bytes);
+    EXPECT_EQ(TemporaryFolder::read(at("more")), bytes);
   }
   options.cache = nullptr;
   std::vector<std::filesystem::path> parts;
@@ -147,7 +134,7 @@ TEST(Permute, WritesTheSameBytesWhateverTheThreadsTheCacheAndTheShards) {
   }
   EXPECT_EQ(closures, 9u);
   ASSERT_TRUE(merge_archives(parts, at("merged")));
-  EXPECT_EQ(read(at("merged")), bytes);
+  EXPECT_EQ(TemporaryFolder::read(at("merged")), bytes);
 }
 
 /// Our own registry with a technique `mine` of this text.

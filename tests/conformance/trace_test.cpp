@@ -359,7 +359,7 @@ TEST(Trace, ExtremeRaysGiveFiniteNumbers) {
   }
 }
 
-TEST(Trace, HardwareFilteringDiffersByWhatEightFractionalBitsCost) {
+TEST(Trace, HardwareFilteringDiffersByNoMoreThanEightFractionalBitsCost) {
   const HeightMap map = smooth_noise_map(32, 32);
   const std::vector<Ray> rays = make_view_rays(60, 0.1, 64, 64);
   const std::vector<Hit> truth = Oracle(map).trace(rays);
@@ -373,8 +373,11 @@ TEST(Trace, HardwareFilteringDiffersByWhatEightFractionalBitsCost) {
     EXPECT_EQ(exact.non_finite, 0U) << name;
     // Bisection ends at an ulp of t, about 1e-7, and float interpolation adds a few more.
     EXPECT_LT(exact.height.max, 2e-6) << name;
-    // A weight that is off by 2^-9 moves the height by that share of a texel's rise, here at most about 1/4.
-    EXPECT_LT(hardware.height.max, 0.25 / 512 * 4) << name;
+    // A weight that is off by 2^-9 moves the surface by that share of a texel's rise, here at most 0.135, and there is
+    // one weight an axis. A hit is moved less than twice as far: the ray falls by 17 a map's width, and the surface
+    // rises by 6 at most. Software drivers filter in float, so there may be no difference at all.
+    EXPECT_LT(hardware.height.max, 0.135 / 512 * 2 * 2) << name;
+    EXPECT_LT(hardware.mean_fetches, exact.mean_fetches / 3) << name << ": one fetch in place of four";
   }
 }
 

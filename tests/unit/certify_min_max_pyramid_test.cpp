@@ -67,5 +67,16 @@ TEST(CertifyMinMaxPyramid, MapsOfAnotherShapeAndNumbersThatAreNoneAreRefused) {
   EXPECT_EQ(certify(map, faulty).error().id, "certify.non-finite");
 }
 
+TEST(Certify, AMapThatNobodyCertifiesIsRefused) {
+  const HeightMap map = white_noise_map(7, 13);
+  MapData other = baked(map, name);
+  other.name = "other";
+  const Result<Certificate> refused = certify(map, other);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().id, "certify.unknown");
+  for (const std::string& known : certified_maps())
+    EXPECT_NE(refused.error().message.find(known), std::string::npos) << refused.error().message;
+}
+
 }  // namespace
 }  // namespace relievo::test

@@ -91,7 +91,7 @@ TEST(PermutationPlan, RefusesAxesAndValuesThatNobodyHas) {
   }
 }
 
-/// Found by a search among 2^88: two pairs of values whose shares in a key have one sum.
+/// Among 2^88 quadruples of values a few have shares in a key whose sums are equal, such as this one.
 TEST(PermutationPlan, RefusesTwoPermutationsOfOneKey) {
   Registry wide = registry();
   for (Parameter& parameter : wide.techniques.at("relief").parameters) parameter.maximum = 1e7;

@@ -299,6 +299,8 @@ TEST(ArchiveWriter, RefusesValuesThatAreNone) {
   EXPECT_EQ(id_of(writer.add_permutation(right, program + 1)), "archive.values");
   const std::vector<std::pair<Target, std::string>> twice = {{kMsl, "one"}, {kMsl, "two"}};
   EXPECT_EQ(id_of(writer.add_permutation(right, program, twice)), "archive.values");
+  const std::pair<Target, std::string> there[] = {{sample_program("x").outputs.front().target, "no"}};
+  EXPECT_EQ(id_of(writer.add_permutation(right, program, there)), "archive.values");
   EXPECT_EQ(id_of(writer.add_permutation(right, program)), "");
 }
 

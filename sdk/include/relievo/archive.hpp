@@ -81,9 +81,9 @@ class ArchiveWriter {
   Result<std::uint32_t> add_program(const ProgramImage& program);
   /// `values`: an index (or kNoValue) an axis. `absent`: targets that it was asked for and cannot have, each with the
   /// reason. The same permutation may come again. Errors: "archive.values" for a wrong count or index, a program that
-  /// was not added, or a target with two reasons; "archive.conflict" when the permutation comes again with another
-  /// program or other absent targets; "archive.key-collision" when two permutations have one key: the message names
-  /// both.
+  /// was not added, or a target with two reasons or with outputs of the program; "archive.conflict" when the
+  /// permutation comes again with another program or other absent targets; "archive.key-collision" when two
+  /// permutations have one key: the message names both.
   Status add_permutation(std::span<const std::uint16_t> values, std::uint32_t program,
                          std::span<const std::pair<Target, std::string>> absent = {});
   /// Writes the archive and renames it to `path`; nothing can be added after it. Errors: "archive.write".

@@ -192,6 +192,16 @@ Status ArchiveWriter::add_permutation(std::span<const std::uint16_t> values, std
                 fmt::format("program {} was not added; there are {}", program, contents.programs.size()),
                 state_->path.string());
   }
+  for (const archive::ProgramOutputBlob& output : contents.programs[program].outputs) {
+    const auto is_absent = [&](const auto& a) {
+      return std::get<0>(a) == static_cast<int>(output.target.language) && std::get<1>(a) == output.target.version;
+    };
+    if (std::ranges::any_of(*absence, is_absent)) {
+      return fail(ErrorCode::usage, "archive.values",
+                  fmt::format("target {} is absent and has an output", to_string(output.target)),
+                  state_->path.string());
+    }
+  }
   const std::uint32_t number = state_->number_of(std::move(*absence));
   return state_->add(values, {program, number, state_->value_keys.key(values)});
 }

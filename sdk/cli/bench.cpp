@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "common.hpp"
 #include "evaluation/embree_rival.hpp"
@@ -28,7 +29,7 @@ Result<std::vector<TraceRequest>> requests_of(const Registry& registry, const Be
   if (!settings) return tl::unexpected(settings.error());
   Result<HeightFilter> filter = parse_height_filter(options.filter);
   if (!filter) return tl::unexpected(filter.error());
-  settings->values.try_emplace("ray.scale", options.scale);
+  set_scale(registry, options.scale, settings->values);
   std::vector<TraceRequest> requests;
   for (const std::string& name : *names) {
     auto own = settings->filters.find(name);
@@ -75,43 +76,75 @@ std::size_t map_bytes(const Registry& registry, const std::string& technique, co
 }
 
 /// The row of Embree's fastest method, with the times of the others.
-Result<nlohmann::json> race(const BenchOptions& options, const HeightMap& height, std::span<const Ray> rays,
-                            std::span<const Hit> truth, double reference) {
-  Result<RivalResult> rival = race_embree(height, options.scale, rays, options.embree_threads, options.repeat);
-  if (!rival) return tl::unexpected(rival.error());
-  const RivalRun& best = rival->runs[rival->fastest];
-  const ErrorFigures figures = compare_hits(truth, best.hits, height.width, height.height);
+nlohmann::json row_of(const RivalResult& rival, const BenchOptions& options, const ErrorFigures& figures,
+                      double reference) {
+  const RivalRun& best = rival.runs[rival.fastest];
   nlohmann::json row = to_json(figures);
-  const double seconds = median(best.seconds);
   row.update({{"technique", "embree"},
               {"filter", "triangles"},
               {"steps", 0.0},
               {"fetches", 0.0},
-              {"map_bytes", rival->bytes},
-              {"triangle_bytes", rival->triangle_bytes},
-              {"peak_bytes", rival->peak_bytes},
-              {"build_s", rival->build_seconds},
+              {"map_bytes", rival.bytes},
+              {"triangle_bytes", rival.triangle_bytes},
+              {"peak_bytes", rival.peak_bytes},
+              {"build_s", rival.build_seconds},
               {"threads", options.embree_threads},
               {"method", best.method},
               {"values", nlohmann::json::object()}});
-  add_times(row, seconds, rays.size(), reference);
-  for (const RivalRun& run : rival->runs) row["methods"][run.method] = median(run.seconds);
+  add_times(row, median(best.seconds), best.hits.size(), reference);
+  for (const RivalRun& run : rival.runs) row["methods"][run.method] = median(run.seconds);
   return row;
 }
+
+/// Techniques on a backend, timed round after round.
+class Timing {
+ public:
+  Timing(Backend& backend, const Registry& registry, MapSet& maps, std::span<const Ray> rays,
+         std::span<const TraceRequest> requests)
+      : backend_(backend),
+        registry_(registry),
+        maps_(maps),
+        rays_(rays),
+        requests_(requests),
+        results_(requests.size()) {}
+
+  /// A first round more is not counted: drivers compile what they run first.
+  Status run(int rounds) {
+    Result<std::vector<TraceResult>> traced = trace(backend_, registry_, maps_, rays_, requests_, rounds + 1);
+    if (!traced) return tl::unexpected(traced.error());
+    for (std::size_t k = 0; k < results_.size(); ++k) {
+      const std::vector<double>& seconds = (*traced)[k].seconds;
+      results_[k].hits = std::move((*traced)[k].hits);
+      if (!seconds.empty()) results_[k].seconds.insert(results_[k].seconds.end(), seconds.begin() + 1, seconds.end());
+    }
+    return {};
+  }
+
+  const std::vector<TraceResult>& results() const { return results_; }
+
+ private:
+  Backend& backend_;
+  const Registry& registry_;
+  MapSet& maps_;
+  std::span<const Ray> rays_;
+  std::span<const TraceRequest> requests_;
+  std::vector<TraceResult> results_;
+};
 
 std::string time_text(const nlohmann::json& value, double unit) {
   return value.is_null() ? "-" : fmt::format("{:.2f}", value.get<double>() * unit);
 }
 
 void print_table(const nlohmann::json& rows) {
-  fmt::print("{:<20} {:<9} {:>9} {:>9} {:>6} {:>8} {:>8} {:>8} {:>10} {:>10} {:>8}\n", "technique", "filter", "ms",
-             "Mrays/s", "ratio", "steps", "fetches", "wrong %", "p99 texel", "p99 |dH|", "MB");
+  fmt::print("{:<20} {:<9} {:>9} {:>9} {:>6} {:>8} {:>8} {:>8} {:>11} {:>10} {:>10} {:>8}\n", "technique", "filter",
+             "ms", "Mrays/s", "ratio", "steps", "fetches", "wrong %", "exhausted %", "p99 texel", "p99 |dH|", "MB");
   for (const auto& r : rows) {
-    fmt::print("{:<20} {:<9} {:>9} {:>9} {:>6} {:>8.1f} {:>8.1f} {:>8.3f} {:>10.2e} {:>10.2e} {:>8.1f}\n",
+    fmt::print("{:<20} {:<9} {:>9} {:>9} {:>6} {:>8.1f} {:>8.1f} {:>8} {:>11} {:>10} {:>10} {:>8.1f}\n",
                r["technique"].get<std::string>(), r["filter"].get<std::string>(), time_text(r["median_s"], 1e3),
                time_text(r["rays_per_s"], 1e-6), time_text(r["ratio"], 1), r["steps"].get<double>(),
-               r["fetches"].get<double>(), r["wrong_percent"].get<double>(), r["uv_texels"]["p99"].get<double>(),
-               r["height"]["p99"].get<double>(), r["map_bytes"].get<double>() / 1e6);
+               r["fetches"].get<double>(), percent_text(r["wrong_percent"].get<double>()),
+               percent_text(r["exhausted_percent"].get<double>()), error_text(r["uv_texels"]["p99"].get<double>()),
+               error_text(r["height"]["p99"].get<double>()), r["map_bytes"].get<double>() / 1e6);
     if (!r.contains("method")) continue;
     fmt::print("embree: {} on {} threads, built in {:.2f} s, at most {:.1f} MB; every way, in Mrays/s:",
                r["method"].get<std::string>(), r["threads"].get<unsigned>(), r["build_s"].get<double>(),
@@ -142,21 +175,28 @@ Status run_bench(const Context& context, const BenchOptions& options) {
   for (TraceRequest& request : counting) request.count_cost = true;
   Result<std::vector<TraceResult>> counted = trace(**backend, *registry, maps, rays, counting);
   if (!counted) return tl::unexpected(counted.error());
-  Result<std::vector<TraceResult>> timed = trace(**backend, *registry, maps, rays, *timing, options.repeat);
-  if (!timed) return tl::unexpected(timed.error());
+  Timing timed(**backend, *registry, maps, rays, *timing);
+  std::optional<RivalResult> rival;
+  if (options.embree) {
+    Result<RivalResult> raced =
+        race_embree(*height, options.scale, rays, options.embree_threads, options.repeat, [&] { return timed.run(1); });
+    if (!raced) return tl::unexpected(raced.error());
+    rival = std::move(*raced);
+  } else if (Status status = timed.run(options.repeat); !status) {
+    return status;
+  }
   std::vector<Hit> truth = Oracle(*height).trace(rays);
   nlohmann::json rows = nlohmann::json::array();
-  double reference = median(timed->front().seconds);
+  double reference = median(timed.results().front().seconds);
   for (std::size_t k = 0; k < timing->size(); ++k) {
     ErrorFigures figures = compare_hits(truth, (*counted)[k].hits, height->width, height->height);
-    rows.push_back(row_of((*timing)[k], (*timed)[k], figures, reference));
+    rows.push_back(row_of((*timing)[k], timed.results()[k], figures, reference));
     rows.back()["values"] = values_of(*registry, (*backend)->info(), (*timing)[k]);
     rows.back()["map_bytes"] = map_bytes(*registry, (*timing)[k].technique, maps);
   }
-  if (options.embree) {
-    Result<nlohmann::json> row = race(options, *height, rays, truth, reference);
-    if (!row) return tl::unexpected(row.error());
-    rows.push_back(std::move(*row));
+  if (rival) {
+    const ErrorFigures figures = compare_hits(truth, rival->runs[rival->fastest].hits, height->width, height->height);
+    rows.push_back(row_of(*rival, options, figures, reference));
   }
   if (context.json) {
     print_json(rows);

@@ -197,6 +197,16 @@ Result<HeightMap> load_height(const std::string& path, const std::string& addres
   return map;
 }
 
+void set_scale(const Registry& registry, double scale, std::map<std::string, double>& values) {
+  const auto set = [&](const std::string& owner, const std::vector<Parameter>& parameters) {
+    for (const Parameter& p : parameters) {
+      if (p.name == "scale") values.try_emplace(owner + ".scale", std::clamp(scale, p.minimum, p.maximum));
+    }
+  };
+  set("ray", registry.stages.at("ray").parameters);
+  for (const auto& [name, map] : registry.maps) set(name, map.parameters);
+}
+
 Result<LoadedScene> load_scene_parts(const std::filesystem::path& path) {
   Result<Scene> scene = load_scene(path);
   if (!scene) return tl::unexpected(scene.error());
@@ -209,6 +219,10 @@ Result<LoadedScene> load_scene_parts(const std::filesystem::path& path) {
 
 void print_json(const nlohmann::json& document) {
   fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+std::string json_text(const nlohmann::json& document) {
+  return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 Status write_text(const std::string& path, const std::string& text) {
@@ -232,7 +246,17 @@ double median(std::vector<double> values) {
   if (values.empty()) return -1;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.size() % 2 == 1 ? *middle : (*middle + *std::max_element(values.begin(), middle)) / 2;
+}
+
+std::string percent_text(double percent) {
+  if (std::isnan(percent)) return "-";
+  if (percent == 0) return "0";
+  return percent < 0.0005 ? "<0.001" : fmt::format("{:.3f}", percent);
+}
+
+std::string error_text(double error) {
+  return std::isnan(error) ? "-" : fmt::format("{:.2e}", error);
 }
 
 nlohmann::json to_json(const ErrorFigures& f) {
@@ -242,6 +266,10 @@ nlohmann::json to_json(const ErrorFigures& f) {
   return {{"rays", f.rays},
           {"ambiguous", f.ambiguous},
           {"judged", f.judged},
+          {"missed", f.missed},
+          {"false_hit", f.false_hit},
+          {"wrong_layer", f.wrong_layer},
+          {"exhausted", f.exhausted},
           {"missed_percent", f.percent(f.missed)},
           {"false_hit_percent", f.percent(f.false_hit)},
           {"wrong_layer_percent", f.percent(f.wrong_layer)},

@@ -74,6 +74,10 @@ Result<std::vector<std::string>> technique_names(const Registry& registry, const
 
 Result<HeightMap> load_height(const std::string& path, const std::string& address);
 
+/// Gives the lid's height (texture widths) to the stage `ray` and to every map that is baked for one: to their
+/// parameters of the name `scale`, within their ranges, as far as `values` leaves them open.
+void set_scale(const Registry& registry, double scale, std::map<std::string, double>& values);
+
 /// The scene's parts, loaded: mesh files go through Assimp.
 struct LoadedScene {
   Scene scene;
@@ -90,13 +94,20 @@ constexpr std::string_view stage_suffix(ShaderStage stage) {
 
 /// Prints a document on stdout; what is no UTF-8 in it, such as a file's name, with � for the bytes that are not.
 void print_json(const nlohmann::json& document);
+/// The same on one line.
+std::string json_text(const nlohmann::json& document);
 
 /// Writes a file atomically, a pipe or device in place; "-" is stdout.
 Status write_text(const std::string& path, const std::string& text);
 Status make_folder(const std::filesystem::path& path);
 
-/// The upper median; −1 of nothing, which stands for "not timed".
+/// Of an even number the mean of the two in the middle; −1 of nothing, which stands for "not timed".
 double median(std::vector<double> values);
+
+/// "12.345"; "<0.001" for what would be rounded to nothing, "0" for nothing itself, "-" of no rays (NaN).
+std::string percent_text(double percent);
+/// "1.2e-03", or "-" of no values (NaN).
+std::string error_text(double error);
 
 nlohmann::json to_json(const ErrorFigures& figures);
 

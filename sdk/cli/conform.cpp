@@ -20,17 +20,30 @@ struct ConformOptions {
   FuzzInput fuzz_input;
 };
 
+/// Backends may filter differently in hardware: that is told, and no claim.
+void print_hardware_agreement(const Evaluation& evaluation) {
+  const RayAgreement* least = nullptr;
+  for (const RayAgreement& r : evaluation.ray_agreements) {
+    if (r.filter == "hardware" && (!least || r.equal_percent < least->equal_percent)) least = &r;
+  }
+  if (!least) return;
+  fmt::print("filter hardware: {:.5g} % of the rays are equal between backends at worst ({} on {} at {}°)\n",
+             least->equal_percent, least->technique, least->case_name, least->angle);
+}
+
 void print(const Evaluation& evaluation) {
   for (const NotRun& n : evaluation.not_run) fmt::print("not run: {}, because {}\n", n.what, n.reason);
   if (!evaluation.rays.empty()) {
-    fmt::print("{:<22} {:>5} {:<20} {:<9} {:<8} {:>9} {:>9} {:>10} {:>10}\n", "map", "angle", "technique", "filter",
-               "backend", "wrong %", "missed %", "p99 texel", "p99 |dH|");
+    fmt::print("{:<22} {:>5} {:<20} {:<9} {:<8} {:>9} {:>9} {:>11} {:>10} {:>10}\n", "map", "angle", "technique",
+               "filter", "backend", "wrong %", "missed %", "exhausted %", "p99 texel", "p99 |dH|");
   }
   for (const RayRow& r : evaluation.rays) {
-    fmt::print("{:<22} {:>5} {:<20} {:<9} {:<8} {:>9.4f} {:>9.4f} {:>10.2e} {:>10.2e}\n", r.case_name, r.angle,
-               r.technique, r.filter, r.backend, r.error.wrong_percent(), r.error.percent(r.error.missed),
-               r.error.uv_texels.p99, r.error.height.p99);
+    const ErrorFigures& e = r.error;
+    fmt::print("{:<22} {:>5} {:<20} {:<9} {:<8} {:>9} {:>9} {:>11} {:>10} {:>10}\n", r.case_name, r.angle, r.technique,
+               r.filter, r.backend, percent_text(e.wrong_percent()), percent_text(e.percent(e.missed)),
+               percent_text(e.percent(e.exhausted)), error_text(e.uv_texels.p99), error_text(e.height.p99));
   }
+  print_hardware_agreement(evaluation);
   for (const Check& c : evaluation.checks) {
     fmt::print("{} {}: {}; expected {}\n", c.passed ? "pass" : "FAIL", c.name, c.found, c.expected);
   }

@@ -103,14 +103,16 @@ Result<Report> measure(EvaluationInput input, const ReportOptions& options, std:
   Report report;
   report.techniques = input.techniques;
   report.pictures = input.pictures;
+  report.values = to_texts(*input.registry, input.values);
   leave_out_maps(options, input.ray_cases, not_run);
   EvaluationInput judged = input_to_judge(input, options, not_run);
   report.ray_image = judged.ray_image;
   report.repeats = judged.repeats;
   std::size_t files = input.ray_cases.size();
   if (!options.quick && files > 0) {
+    const auto is_taken = [&](const std::string& name) { return is_name_of(input.ray_cases, name); };
     for (NamedMap& map : make_synthetic_maps(synthetic_size))
-      input.ray_cases.push_back({map.name, std::move(map.height)});
+      input.ray_cases.push_back({unlike_others(map.name, is_taken), std::move(map.height)});
   }
   Result<Sweep> sweep = run_sweep(input, plan_of(options));
   if (!sweep) return tl::unexpected(sweep.error());
@@ -128,6 +130,7 @@ Result<Report> measure(EvaluationInput input, const ReportOptions& options, std:
 nlohmann::json json_of(const Report& report) {
   nlohmann::json json = to_json(report.evaluation);
   json["pictures_folder"] = "pictures";
+  json["values"] = report.values;
   json["sweep"] = to_json(report.sweep);
   json["phases"] = nlohmann::json::array();
   for (const Phase& p : report.phases)
@@ -139,7 +142,7 @@ Status write_files(const Report& report, const nlohmann::json& json, const std::
   if (Status status = write_heat(report.sweep, report.pictures); !status) return status;
   Result<std::string> page = make_page(report);
   if (!page) return tl::unexpected(page.error());
-  if (Status status = write_text(folder / "report.json", json.dump() + "\n"); !status) return status;
+  if (Status status = write_text(folder / "report.json", json_text(json) + "\n"); !status) return status;
   if (Status status = write_text(folder / "report.csv", sweep_csv(report.sweep)); !status) return status;
   if (Status status = write_text(folder / "pictures.csv", pictures_csv(report.evaluation)); !status) return status;
   return write_text(folder / "index.html", *page);
@@ -160,15 +163,16 @@ void print_techniques(const Report& report) {
     });
   };
   fmt::print("\n{} on {}, filter exact, at {}°\n", map, backend, shown_angle);
-  fmt::print("{:<22} {:>9} {:>9} {:>10} {:>8} {:>8} {:>9} {:>8}\n", "technique", "wrong %", "missed %", "p99 texel",
-             "steps", "fetches", "Mrays/s", "x relief");
+  fmt::print("{:<22} {:>9} {:>9} {:>11} {:>10} {:>8} {:>8} {:>9} {:>8}\n", "technique", "wrong %", "missed %",
+             "exhausted %", "p99 texel", "steps", "fetches", "Mrays/s", "x relief");
   for (const std::string& technique : report.techniques) {
     auto row = find(technique, shown_angle);
     if (row == rows.end()) continue;
     const ErrorFigures& e = row->error;
     double ratio = ratio_to_relief(report.evaluation, *row);
-    fmt::print("{:<22} {:>9.3f} {:>9.3f} {:>10.4f} {:>8.1f} {:>8.1f} {:>9} {:>8}\n", technique, e.wrong_percent(),
-               e.percent(e.missed), e.uv_texels.p99, e.mean_steps, e.mean_fetches,
+    fmt::print("{:<22} {:>9} {:>9} {:>11} {:>10} {:>8.1f} {:>8.1f} {:>9} {:>8}\n", technique,
+               percent_text(e.wrong_percent()), percent_text(e.percent(e.missed)), percent_text(e.percent(e.exhausted)),
+               error_text(e.uv_texels.p99), e.mean_steps, e.mean_fetches,
                row->seconds > 0 ? fmt::format("{:.2f}", static_cast<double>(e.rays) / row->seconds / 1e6) : "-",
                ratio > 0 ? fmt::format("{:.2f}", ratio) : "-");
   }

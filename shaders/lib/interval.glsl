@@ -48,6 +48,7 @@ bool relievo_interval(Ray ray, out Interval interval) {
   if (height > 1.0) {
     if (fall >= 0.0) return false;
     interval.enter = relievo_lid(ray);
+    if (!(interval.enter < RELIEVO_NO_LIMIT)) return false;  // further than floats go
   }
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
   relievo_clip_axis(ray.origin.x, ray.direction.x, interval);
@@ -104,6 +105,11 @@ vec3 relievo_entry_point(Ray ray, Interval interval) {
   vec3 point = relievo_point(ray, interval.enter);
   if (ray.origin.z > 1.0) point.z = relievo_enters_at_lid(ray, interval) ? 1.0 : min(point.z, 1.0);
   return point;
+}
+
+// Of a ray without an interval: it never comes to the domain of a clip map, or not to the slab.
+Hit relievo_beside(Ray ray, Interval interval) {
+  return relievo_hit_at(ray, interval.end_status == RELIEVO_OUTSIDE ? RELIEVO_OUTSIDE : RELIEVO_MISS, 0.0);
 }
 
 Hit relievo_end_of(Ray ray, Interval interval) { return relievo_hit_at(ray, interval.end_status, interval.exit); }

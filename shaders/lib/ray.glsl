@@ -50,13 +50,18 @@ bool relievo_is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0
 bool relievo_is_finite(vec3 x) { return all(notEqual(floatBitsToUint(x) & 0x7f800000u, uvec3(0x7f800000u))); }
 bool relievo_is_finite(vec4 x) { return all(notEqual(floatBitsToUint(x) & 0x7f800000u, uvec4(0x7f800000u))); }
 
+bool relievo_is_nan(vec4 x) { return any(greaterThan(floatBitsToUint(x) & 0x7fffffffu, uvec4(0x7f800000u))); }
+
 bool relievo_is_valid(Ray ray) {
   return all(bvec4(relievo_is_finite(ray.origin), relievo_is_finite(vec4(ray.direction, ray.t_max)),
                    ray.direction != vec3(0.0), ray.t_max >= 0.0));
 }
 
-// Nothing that is not finite leaves a stage: such a result becomes a miss at the ray's origin.
+// Nothing that is not finite leaves a stage: what floats cannot reach is as far as they reach, and what is no number at all
+// becomes a miss at the ray's origin.
 Hit relievo_sanitized(Ray ray, Hit hit) {
-  if (relievo_is_finite(vec4(hit.point, hit.t))) return hit;
-  return Hit(RELIEVO_MISS, 0.0, relievo_is_finite(ray.origin) ? ray.origin : vec3(0.0));
+  vec4 numbers = vec4(hit.point, hit.t);
+  if (relievo_is_nan(numbers)) return Hit(RELIEVO_MISS, 0.0, relievo_is_finite(ray.origin) ? ray.origin : vec3(0.0));
+  numbers = clamp(numbers, vec4(-RELIEVO_NO_LIMIT), vec4(RELIEVO_NO_LIMIT));
+  return Hit(hit.status, numbers.w, numbers.xyz);
 }

@@ -18,7 +18,7 @@ float relievo_clearance(vec3 point) {
 bool relievo_begin(Ray ray, out Interval interval, out float clearance, out Hit hit) {
   clearance = 0.0;
   if (!relievo_interval(ray, interval)) {
-    hit = relievo_hit_at(ray, interval.end_status == RELIEVO_OUTSIDE ? RELIEVO_OUTSIDE : RELIEVO_MISS, 0.0);
+    hit = relievo_beside(ray, interval);
     return true;
   }
   vec3 entry = relievo_entry_point(ray, interval);

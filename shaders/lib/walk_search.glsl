@@ -49,7 +49,7 @@ bool relievo_search_solve(Walk walk, WalkPlace place, vec4 corners, inout WalkSe
 // What to return without a search: no walk can be made of the ray, or it meets neither lid nor domain.
 bool relievo_search_begin(Ray ray, ivec2 extent, out Interval interval, out Walk walk, out Hit hit) {
   if (!relievo_interval(ray, interval)) {
-    hit = relievo_hit_at(ray, interval.end_status == RELIEVO_OUTSIDE ? RELIEVO_OUTSIDE : RELIEVO_MISS, 0.0);
+    hit = relievo_beside(ray, interval);
     return false;
   }
   bool is_walk = relievo_walk_start(ray, interval, extent, walk);

@@ -3,6 +3,6 @@
 
 Hit bump_trace(Ray ray) {
   Interval interval;
-  if (!relievo_interval(ray, interval)) return relievo_hit_at(ray, RELIEVO_MISS, 0.0);
+  if (!relievo_interval(ray, interval)) return relievo_beside(ray, interval);
   return relievo_end_of(ray, interval);
 }

@@ -4,7 +4,7 @@
 
 Hit iterative_parallax_trace(Ray ray) {
   Interval interval;
-  if (!relievo_interval(ray, interval)) return relievo_hit_at(ray, RELIEVO_MISS, 0.0);
+  if (!relievo_interval(ray, interval)) return relievo_beside(ray, interval);
   if (interval.end_status != RELIEVO_HIT) return relievo_end_of(ray, interval);
   float t = interval.exit;
   for (int i = 0; i < iterative_parallax_steps; ++i) {

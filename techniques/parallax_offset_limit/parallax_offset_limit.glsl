@@ -4,7 +4,7 @@
 
 Hit parallax_offset_limit_trace(Ray ray) {
   Interval interval;
-  if (!relievo_interval(ray, interval)) return relievo_hit_at(ray, RELIEVO_MISS, 0.0);
+  if (!relievo_interval(ray, interval)) return relievo_beside(ray, interval);
   if (interval.end_status != RELIEVO_HIT) return relievo_end_of(ray, interval);
   RELIEVO_COUNT_STEP();
   float height = relievo_height_at(relievo_point(ray, interval.exit).xy);

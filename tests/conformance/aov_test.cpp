@@ -21,15 +21,6 @@ HeightMap ramp(bool along_v) {
   return with_address(map, AddressMode::clamp);
 }
 
-RenderRequest request_of(const std::string& stage, const std::string& technique, Aov aov) {
-  RenderRequest request;
-  request.stage = stage;
-  request.technique = technique;
-  request.filter = HeightFilter::exact;
-  request.aov = aov;
-  return request;
-}
-
 TEST(AovNormal, OfARampIsThatOfItsPlane) {
   const Scene scene = make_scene(MeshKind::plane, 64);
   const Mesh mesh = mesh_of(scene);
@@ -84,7 +75,7 @@ TEST(AovSteps, AreThoseOfATracedRay) {
       };
       const Image steps = image_of(Aov::steps);
       const std::vector<Ray> rays = rays_of(image_of(Aov::ray_origin), image_of(Aov::ray_direction));
-      const std::vector<Hit> hits = trace_on(name, map, rays, test::request_of(technique));
+      const std::vector<Hit> hits = trace_on(name, map, rays, request_of(technique));
       int judged = 0, same = 0;
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const float* pixel = &steps.pixels[4 * i];

@@ -11,15 +11,6 @@ namespace {
 
 using Pixels = std::vector<std::uint8_t>;
 
-RenderRequest request_of(const std::string& stage, const std::string& technique, Aov aov = Aov::color) {
-  RenderRequest request;
-  request.stage = stage;
-  request.technique = technique;
-  request.filter = HeightFilter::exact;
-  request.aov = aov;
-  return request;
-}
-
 /// The stages that draw, each with a technique where it traces.
 std::vector<std::pair<std::string, std::string>> drawing_cases() {
   return {{"surface", "relief"}, {"vertex", ""}, {"prism", "relief"}};

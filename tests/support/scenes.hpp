@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "relievo/render.hpp"
 #include "relievo/scene.hpp"
 
 namespace relievo::test {
@@ -24,6 +25,16 @@ inline Scene make_scene(MeshKind kind, int size = 160, float scale = 0.12f) {
 inline Mesh mesh_of(const Scene& scene) {
   Result<Mesh> mesh = scene_mesh(scene);
   return mesh ? std::move(*mesh) : Mesh{};
+}
+
+/// Of a picture with the exact filter.
+inline RenderRequest request_of(const std::string& stage, const std::string& technique, Aov aov = Aov::color) {
+  RenderRequest request;
+  request.stage = stage;
+  request.technique = technique;
+  request.filter = HeightFilter::exact;
+  request.aov = aov;
+  return request;
 }
 
 }  // namespace relievo::test

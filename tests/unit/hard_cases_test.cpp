@@ -223,6 +223,9 @@ TEST(HardCases, EveryKindOfFaultIsCaughtWithItsRay) {
   EXPECT_EQ(fault(3, miss), "1 missed");
   EXPECT_EQ(fault(8, [](Hit& hit) { hit.status = HitStatus::hit; }), "1 false");
   EXPECT_EQ(fault(9, [](Hit& hit) { hit.status = HitStatus::hit; }), "1 wrong") << "inside is to be said";
+  EXPECT_EQ(fault(9, miss), "1 missed") << "counted once";
+  EXPECT_EQ(fault(9, [](Hit& hit) { hit.t = 1; }), "1 wrong") << "inside is at t = 0";
+  EXPECT_EQ(fault(8, [](Hit& hit) { hit.sanitized = true; }), "1 NaN or Inf");
   EXPECT_EQ(fault(3, exhausted), "1 exhausted");
   EXPECT_EQ(fault(3, exhausted, FirstHit::always, true), "");
   EXPECT_EQ(fault(8, not_a_number), "1 NaN or Inf");

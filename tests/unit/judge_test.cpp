@@ -19,12 +19,14 @@ struct Case {
     vulkan.name = "vulkan";
     opengl.name = "opengl";
     evaluation.backends = {{opengl, {}}, {vulkan, {}}};
-    evaluation.rays.emplace_back();
-    evaluation.ray_agreements.push_back({"map", "relief", 20, 1000000, 100});
+    evaluation.rays.push_back({"map", "exact", "vulkan", "exact", 20, {}});
+    evaluation.ray_agreements.push_back({"map", "relief", "exact", 20, 1000000, 100});
+    evaluation.ray_agreements.push_back({"map", "relief", "hardware", 20, 1000000, 98});
     evaluation.pictures.push_back({"ball", "prism", "relief", "vulkan", "", "", "", 0, true, 0});
     evaluation.picture_agreements.push_back({"ball", "prism", "relief", "opengl", "vulkan", {}, -1, {}});
     evaluation.picture_agreements.push_back({"ball", "prism", "relief", "vulkan", "vertex", {}, -1, {}});
     PixelOffsets offsets;
+    offsets.judged = 100;
     offsets.pixels.p99 = 0.01;
     evaluation.picture_agreements.push_back({"ball", "prism", "exact", "vulkan", "oracle", {}, 0, offsets});
     evaluation.cracks.push_back({"ball", "relief", "vulkan", 1, 0});
@@ -55,7 +57,38 @@ TEST(Judge, PassesRowsThatKeepEveryClaim) {
 TEST(Judge, FailsRaysThatDifferBetweenBackends) {
   Case bad;
   bad.evaluation.ray_agreements[0].equal_percent = 99.98;
-  EXPECT_EQ(bad.failures(), Names({"rays equal between backends"}));
+  EXPECT_EQ(bad.failures(), Names({"rays equal between backends, t within 4 ulp, filter exact"}));
+}
+
+TEST(Judge, FailsOneRayThatIsWrongWhereFirstHitsAreCertain) {
+  for (std::uint64_t ErrorFigures::*figure :
+       {&ErrorFigures::missed, &ErrorFigures::false_hit, &ErrorFigures::wrong_layer, &ErrorFigures::exhausted}) {
+    Case bad;
+    bad.evaluation.rays[0].error.*figure = 1;
+    EXPECT_EQ(bad.failures(),
+              Names({"rays missed, falsely hit, on a wrong layer or exhausted where first hits are certain"}));
+    bad.evaluation.checks.clear();
+    bad.evaluation.rays[0].technique = "relief";
+    EXPECT_EQ(bad.failures(), Names()) << "relief mapping claims no such thing";
+  }
+}
+
+TEST(Judge, FailsAPictureThatShowsNothingWhereTheOracleDoes) {
+  Case bad;
+  PictureAgreement& agreement = bad.evaluation.picture_agreements[2];
+  agreement.offsets = PixelOffsets();  // no pixel in common
+  agreement.difference.mask_iou = 0;
+  const Names offsets = {"pixel offset against the oracle's picture where first hits are certain, p99"};
+  EXPECT_EQ(bad.failures(), offsets);
+  bad.evaluation.checks.clear();
+  bad.evaluation.picture_agreements.push_back(bad.evaluation.picture_agreements[0]);
+  bad.evaluation.picture_agreements.back() = {"ball",   "prism", "exact", "opengl",
+                                              "oracle", {},      0,       PixelOffsets{9, 0, {0, 0, 0}}};
+  EXPECT_EQ(bad.failures(), offsets) << "a good row behind it hides nothing";
+  bad.evaluation.checks.clear();
+  agreement = bad.evaluation.picture_agreements[2];
+  bad.evaluation.picture_agreements[2].difference.mask_iou = 1;
+  EXPECT_EQ(bad.failures(), Names()) << "nothing is to be seen";
 }
 
 TEST(Judge, FailsFeaturesThatMovedWhereFirstHitsAreCertain) {

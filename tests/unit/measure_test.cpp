@@ -102,6 +102,24 @@ TEST(CompareHits, NeverTakesNonFiniteForRight) {
   EXPECT_EQ(compare_one(with_status(HitStatus::miss), miss).non_finite, 1u);
 }
 
+TEST(CompareHits, CountsWhatTheStageMadeAMissWhetherItIsJudgedOrNot) {
+  Hit ambiguous = hit(0.1, 0.2, 0.3), sanitized = with_status(HitStatus::miss);
+  ambiguous.ambiguous = true;
+  sanitized.sanitized = true;
+  EXPECT_EQ(compare_one(ambiguous, sanitized).non_finite, 1u);
+  EXPECT_EQ(compare_one(with_status(HitStatus::miss), sanitized).non_finite, 1u);
+}
+
+TEST(CompareHits, HasNoFiguresOfNothing) {
+  Hit ambiguous = hit(0.1, 0.2, 0.3);
+  ambiguous.ambiguous = true;
+  const ErrorFigures unjudged = compare_one(ambiguous, ambiguous);
+  EXPECT_TRUE(std::isnan(unjudged.wrong_percent())) << "no ray is judged";
+  const ErrorFigures missed = compare_one(hit(0.1, 0.2, 0.3), with_status(HitStatus::miss));
+  EXPECT_EQ(missed.wrong_percent(), 100);
+  EXPECT_TRUE(std::isnan(missed.uv_texels.p99) && std::isnan(missed.height.max)) << "no hit is right";
+}
+
 TEST(CompareHits, GivesNearestRankQuantiles) {
   std::vector<Hit> reference, measured;
   for (int i = 1; i <= 200; ++i) {  // in a scrambled order
@@ -135,10 +153,10 @@ TEST(CompareHits, AveragesTheMeasuredCost) {
   EXPECT_EQ(figures.mean_fetches, 50);
 }
 
-TEST(CompareHits, IsAllZeroWithoutRays) {
+TEST(CompareHits, CountsNothingWithoutRays) {
   const ErrorFigures figures = compare_hits({}, {}, width, height);
   EXPECT_EQ(figures.rays, 0u);
-  EXPECT_EQ(figures.wrong_percent(), 0);
+  EXPECT_TRUE(std::isnan(figures.wrong_percent()));
   EXPECT_EQ(figures.mean_steps, 0);
 }
 

@@ -119,7 +119,7 @@ TEST(PixelOffsets, JudgeWhatBothPicturesDraw) {
   EXPECT_EQ(pixel_offsets(a, b).judged, 64u * 48u - 3);
   Image empty{width, height, 4, std::vector<float>(4 * width * height)};
   EXPECT_EQ(pixel_offsets(empty, empty).judged, 0u);
-  EXPECT_EQ(pixel_offsets(empty, empty).lost_percent(), 0);
+  EXPECT_TRUE(std::isnan(pixel_offsets(empty, empty).lost_percent()));
 }
 
 /// One pixel of many that moved is seen in the largest offset, and in no quantile that it is too few for.

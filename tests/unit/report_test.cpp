@@ -151,6 +151,14 @@ TEST(ReportBest, ARayWhoseBudgetRunsOutIsWrong) {
   EXPECT_TRUE(rows[1].best);
 }
 
+TEST(ReportBest, WhatIsNotJudgedIsNotThere) {
+  std::vector<SweepRow> rows = {row_of("unjudged", 0, 0.5, 0), row_of("finds", 0, 1, 10)};
+  rows[0].error.judged = 0;
+  mark_best(rows);
+  EXPECT_FALSE(rows[0].best);
+  EXPECT_TRUE(rows[1].best);
+}
+
 /// The settings of a technique with one loop.
 std::vector<int> counts_tried(double minimum, double maximum, double value, std::map<std::string, double> given = {}) {
   Registry registry;

@@ -246,7 +246,7 @@ tl::unexpected<Error> embree_error(RTCDevice device, const char* what) {
 }  // namespace
 
 Result<RivalResult> race_embree(const HeightMap& map, double scale, std::span<const Ray> rays, unsigned threads,
-                                int repeats) {
+                                int repeats, const std::function<Status()>& before_round) {
   if (map.address != AddressMode::repeat) {
     return fail(ErrorCode::usage, "bench.embree-address",
                 fmt::format("Embree is compared on maps that repeat; the address mode is {}", to_string(map.address)));
@@ -272,6 +272,7 @@ Result<RivalResult> race_embree(const HeightMap& map, double scale, std::span<co
   for (const Method& method : methods) result.runs.push_back({method.name, {}, {}});
   std::vector<TileHit> hits;
   for (int k = 0; k < repeats; ++k) {  // interleaved, as techniques are
+    if (Status status = before_round(); !status) return tl::unexpected(status.error());
     for (std::size_t m = 0; m < methods.size(); ++m) {
       result.runs[m].seconds.push_back(
           time_once(methods[m], {scene.get(), map, methods[m].coherent}, prepared, hits, threads));
@@ -286,7 +287,8 @@ Result<RivalResult> race_embree(const HeightMap& map, double scale, std::span<co
 
 #else
 
-Result<RivalResult> race_embree(const HeightMap&, double, std::span<const Ray>, unsigned, int) {
+Result<RivalResult> race_embree(const HeightMap&, double, std::span<const Ray>, unsigned, int,
+                                const std::function<Status()>&) {
   return fail(ErrorCode::unsupported, "bench.no-embree",
               "this program was built without Embree 3; expected its development package when it is configured");
 }

@@ -1,6 +1,7 @@
 /// What a user has without us: the height map as triangles in Embree 3, traced on the CPU.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -30,8 +31,9 @@ struct RivalResult {
 /// Two triangles a cell between texel centres, `scale` texture widths high. A ray that leaves a tile of the map goes on
 /// in the next one, as our techniques do. `threads` take chunks of rays in order.
 /// Errors: "bench.no-embree" (unsupported) when the program was built without it, "bench.embree-address" for a map that
-/// does not repeat, "bench.embree" when Embree refuses.
+/// does not repeat, "bench.embree" when Embree refuses. `before_round` is called before each repeat, so that others can
+/// be timed under the same load; its error ends the race.
 Result<RivalResult> race_embree(const HeightMap& map, double scale, std::span<const Ray> rays, unsigned threads,
-                                int repeats);
+                                int repeats, const std::function<Status()>& before_round);
 
 }  // namespace relievo::cli

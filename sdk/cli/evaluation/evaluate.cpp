@@ -16,15 +16,17 @@ std::size_t steps_of(const EvaluationInput& input, std::size_t backends) {
   return backends * (2 * angles + input.scenes.size() * (drawing + 1));
 }
 
-/// Rows and pictures are told apart by their map's name.
-std::string unlike_others(const std::string& stem, const std::vector<RayCase>& others) {
+}  // namespace
+
+std::string unlike_others(const std::string& stem, const std::function<bool(const std::string&)>& is_taken) {
   std::string name = stem;
-  const auto is_taken = [&](const RayCase& other) { return other.name == name; };
-  for (int i = 2; std::any_of(others.begin(), others.end(), is_taken); ++i) name = fmt::format("{}-{}", stem, i);
+  for (int i = 2; is_taken(name); ++i) name = fmt::format("{}-{}", stem, i);
   return name;
 }
 
-}  // namespace
+bool is_name_of(const std::vector<RayCase>& cases, const std::string& name) {
+  return std::any_of(cases.begin(), cases.end(), [&](const RayCase& c) { return c.name == name; });
+}
 
 Result<std::string> split_scale(const std::string& item, double& scale) {
   const std::size_t colon = item.rfind(':');
@@ -88,11 +90,20 @@ Result<EvaluationInput> make_input(const Registry& registry, const std::vector<s
   input.techniques = *names;
   Result<Settings> settings = parse_settings(registry, set, names->size() == 1 ? names->front() : "");
   if (!settings) return tl::unexpected(settings.error());
+  if (!settings->filters.empty()) {
+    return fail(ErrorCode::usage, "cli.set",
+                fmt::format("--set {}.filter=…: filters cannot be set here; every technique is tried with those it has",
+                            settings->filters.begin()->first));
+  }
   input.values = settings->values;
   for (const std::string& scene : scenes) {
     Result<LoadedScene> parts = load_scene_parts(scene);
     if (!parts) return tl::unexpected(parts.error());
-    input.scenes.emplace_back(std::filesystem::path(scene).stem().string(), std::move(*parts));
+    const auto is_taken = [&](const std::string& name) {
+      return std::any_of(input.scenes.begin(), input.scenes.end(),
+                         [&](const auto& other) { return other.first == name; });
+    };
+    input.scenes.emplace_back(unlike_others(std::filesystem::path(scene).stem().string(), is_taken), std::move(*parts));
   }
   for (const std::string& item : heights) {
     RayCase ray_case;
@@ -100,7 +111,8 @@ Result<EvaluationInput> make_input(const Registry& registry, const std::vector<s
     if (!path) return tl::unexpected(path.error());
     Result<HeightMap> height = load_height(*path, address);
     if (!height) return tl::unexpected(height.error());
-    ray_case.name = unlike_others(std::filesystem::path(*path).stem().string(), input.ray_cases);
+    ray_case.name = unlike_others(std::filesystem::path(*path).stem().string(),
+                                  [&](const std::string& name) { return is_name_of(input.ray_cases, name); });
     ray_case.height = std::move(*height);
     input.ray_cases.push_back(std::move(ray_case));
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -27,7 +28,9 @@ class BakedMaps {
  public:
   /// `shared`: what one backend bakes serves all.
   explicit BakedMaps(bool shared = false) : shared_(shared) {}
-  MapSet& of(const HeightMap& height, const std::string& backend);
+  /// `values`: what the maps are baked with; where their scales are not the descriptors' own, the maps are others.
+  MapSet& of(const Registry& registry, const HeightMap& height, const std::string& backend,
+             const std::map<std::string, double>& values);
 
  private:
   bool shared_;
@@ -76,13 +79,18 @@ struct RayRow {
   double seconds = -1;  ///< median; −1: not timed
 };
 
-/// Two backends on the same rays, filter exact.
+/// Two backends on the same rays.
 struct RayAgreement {
-  std::string case_name, technique;
+  std::string case_name, technique, filter;
   double angle = 0;
   std::uint64_t judged = 0;  ///< non-ambiguous rays
-  double equal_percent = 0;  ///< status equal and |Δt| ≤ 1e-5 relative
+  double equal_percent = 0;  ///< of these: the same status, and t within `equal_ulps`
 };
+
+/// Hits of two backends are equal that differ by no more steps between floats of t.
+inline constexpr std::int64_t equal_ulps = 4;
+/// Steps between two floats.
+std::int64_t ulps(double a, double b);
 
 /// One picture.
 struct PictureRow {
@@ -90,8 +98,8 @@ struct PictureRow {
   std::string file;                              ///< PNG, relative to the pictures' folder; empty when none was written
   std::string difference_file;                   ///< against the oracle's picture; empty when there is none
   std::string flip_file;                         ///< the same as a map of FLIP
-  double seconds = -1;
-  bool repeatable = true;  ///< all runs byte-identical
+  double seconds = -1;                           ///< median; −1: not timed
+  bool repeatable = true;                        ///< all runs byte-identical
   std::uint64_t degenerate_triangles = 0;
 };
 
@@ -165,11 +173,16 @@ void judge(const EvaluationInput& input, Evaluation& evaluation);
 
 nlohmann::json to_json(const Evaluation& evaluation);
 
+/// `stem`, or "stem-2", "stem-3", …: rows and pictures are told apart by such names.
+std::string unlike_others(const std::string& stem, const std::function<bool(const std::string&)>& is_taken);
+bool is_name_of(const std::vector<RayCase>& cases, const std::string& name);
+
 /// The file of "file" or "file:scale", and `scale` where it is given: what follows the last colon is a scale if it is
 /// made of what numbers are made of. Errors: "cli.scale" for one that is not positive.
 Result<std::string> split_scale(const std::string& item, double& scale);
 
-/// Scenes and height files named on a command line → input. `heights` go through split_scale.
+/// Scenes and height files named on a command line → input. `heights` go through split_scale. Errors besides
+/// those of what is loaded: "cli.set" for a filter.
 Result<EvaluationInput> make_input(const Registry& registry, const std::vector<std::string>& techniques,
                                    const std::vector<std::string>& scenes, const std::vector<std::string>& heights,
                                    const std::string& address, const std::vector<std::string>& set);

@@ -42,6 +42,7 @@ struct FuzzFinding {
 struct FuzzRow {
   std::string technique, backend;
   std::uint64_t calls = 0, hits = 0, exhausted = 0;
+  std::uint64_t sanitized = 0;  ///< NaN within, which the stage made a miss: a ray's own numbers may overflow
   std::uint64_t non_finite = 0, bad_status = 0;
   std::uint64_t judged = 0, unsound = 0;  ///< wrong, missed or false where the first hit is claimed
   std::uint64_t jobs = 0, failed_jobs = 0, slow_jobs = 0;

@@ -28,6 +28,7 @@ void judge_fuzz(const FuzzRound& round, std::span<const Hit> hits, std::span<con
     const Hit& hit = hits[i];
     row.hits += hit.status == HitStatus::hit || hit.status == HitStatus::inside;
     row.exhausted += hit.status == HitStatus::exhausted;
+    row.sanitized += hit.sanitized;
     if (!is_finite(hit) && ++row.non_finite == before[0] + 1)
       findings.push_back("NaN or Inf: " + describe(round.rays[i], hit));
     const int status = static_cast<int>(hit.status);

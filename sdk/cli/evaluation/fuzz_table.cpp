@@ -6,13 +6,14 @@ namespace relievo::cli {
 
 void print(const FuzzResult& result) {
   for (const NotRun& n : result.not_run) fmt::print("not run: {}, because {}\n", n.what, n.reason);
-  fmt::print("{:<22} {:<8} {:>10} {:>10} {:>10} {:>5} {:>9} {:>8} {:>6} {:>9}\n", "technique", "backend", "calls",
-             "hits", "exhausted", "NaN", "judged", "unsound", "failed", "slowest s");
+  fmt::print("{:<22} {:<8} {:>10} {:>10} {:>10} {:>9} {:>5} {:>9} {:>8} {:>6} {:>9}\n", "technique", "backend", "calls",
+             "hits", "exhausted", "sanitized", "NaN", "judged", "unsound", "failed", "slowest s");
   std::uint64_t calls = 0;
   for (const FuzzRow& r : result.rows) {
     calls += r.calls;
-    fmt::print("{:<22} {:<8} {:>10} {:>10} {:>10} {:>5} {:>9} {:>8} {:>6} {:>9.2f}\n", r.technique, r.backend, r.calls,
-               r.hits, r.exhausted, r.non_finite + r.bad_status, r.judged, r.unsound, r.failed_jobs, r.slowest);
+    fmt::print("{:<22} {:<8} {:>10} {:>10} {:>10} {:>9} {:>5} {:>9} {:>8} {:>6} {:>9.2f}\n", r.technique, r.backend,
+               r.calls, r.hits, r.exhausted, r.sanitized, r.non_finite + r.bad_status, r.judged, r.unsound,
+               r.failed_jobs, r.slowest);
   }
   for (const FuzzFinding& f : result.findings)
     fmt::print("FAIL {} on {}, round {}: {}\n", f.technique, f.backend, f.round, f.what);
@@ -39,6 +40,7 @@ nlohmann::json to_json(const FuzzResult& result) {
                             {"calls", r.calls},
                             {"hits", r.hits},
                             {"exhausted", r.exhausted},
+                            {"sanitized", r.sanitized},
                             {"non_finite", r.non_finite},
                             {"bad_status", r.bad_status},
                             {"judged", r.judged},

@@ -10,13 +10,11 @@ namespace {
 /// The ambiguity of the oracle: less deep below the surface, float and double may disagree on which side a ray starts.
 constexpr double certain_depth = 1e-5;
 
-bool is_finite(const Hit& hit) {
-  return std::isfinite(hit.t) && std::isfinite(hit.u) && std::isfinite(hit.v) && std::isfinite(hit.h);
-}
-
-bool is_inside_missed(const HeightMap& map, const Ray& ray, const Hit& truth, const Hit& found) {
+/// Of a ray that `error`, its own figures, finds nothing wrong with.
+bool is_inside_missed(const HeightMap& map, const Ray& ray, const Hit& truth, const Hit& found,
+                      const ErrorFigures& error) {
   if (truth.ambiguous || truth.status != HitStatus::inside) return false;
-  if (found.status == HitStatus::exhausted) return false;  // counted apart
+  if (error.exhausted + error.missed + error.wrong_layer > 0) return false;  // counted there
   if (sample_height(map, ray.u, ray.v) - ray.h <= certain_depth) return false;
   return found.status != HitStatus::inside || found.t != 0;
 }
@@ -25,8 +23,9 @@ HardRow count(const HeightMap& map, std::span<const Ray> rays, std::span<const H
   HardRow row;
   row.error = compare_hits(truth, hits, map.width, map.height);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    row.non_finite += !is_finite(hits[i]);
-    row.not_inside += is_inside_missed(map, rays[i], truth[i], hits[i]);
+    if (truth[i].status != HitStatus::inside) continue;
+    const ErrorFigures one = compare_hits(truth.subspan(i, 1), hits.subspan(i, 1), map.width, map.height);
+    row.not_inside += is_inside_missed(map, rays[i], truth[i], hits[i], one);
   }
   return row;
 }
@@ -67,7 +66,7 @@ std::string fault_of(const HardRow& row, FirstHit claim, bool may_exhaust) {
     add(row.error.false_hit, "false");
     if (!may_exhaust) add(row.error.exhausted, "exhausted");
   }
-  add(row.non_finite, "NaN or Inf");
+  add(row.error.non_finite, "NaN or Inf");
   return fmt::format("{}", fmt::join(faults, ", "));
 }
 

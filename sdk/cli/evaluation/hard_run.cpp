@@ -1,10 +1,10 @@
 #include "evaluation/hard_run.hpp"
 
 #include <fmt/format.h>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <limits>
 
 #include "relievo/trace.hpp"
 
@@ -81,19 +81,8 @@ std::map<std::string, double> values_of(const HardInput& input, const Group& gro
       }
     }
   }
-  for (const Parameter& p : input.registry->stages.at("ray").parameters) {
-    if (p.name == "scale") values.try_emplace("ray.scale", std::clamp(group.scale, p.minimum, p.maximum));
-  }
+  set_scale(*input.registry, group.scale, values);
   return values;
-}
-
-/// Steps between two floats; far when their signs differ.
-std::int64_t ulps(double a, double b) {
-  const auto ordered = [](double x) {
-    const auto bits = std::bit_cast<std::int32_t>(static_cast<float>(x));
-    return static_cast<std::int64_t>(bits >= 0 ? bits : std::int32_t{-0x7fffffff} - 1 - bits);
-  };
-  return std::abs(ordered(a) - ordered(b));
 }
 
 /// The summary of one technique as it grows.
@@ -108,7 +97,7 @@ struct Tally {
       if (truth.ambiguous || !is_hit(truth) || !is_hit(hit)) continue;
       const double du = std::abs(hit.u - truth.u) * group.map.width, dv = std::abs(hit.v - truth.v) * group.map.height;
       const double dh = std::abs(hit.h - truth.h);
-      if (std::max(du, dv) > 1 || dh > 0.02) continue;  // another layer: counted as wrong
+      if (!(std::max(du, dv) <= 1 && dh <= 0.02)) continue;  // another layer, or NaN: counted as wrong
       uv.push_back(std::max(du, dv));
       height.push_back(dh);
     }
@@ -117,11 +106,11 @@ struct Tally {
     for (std::size_t i = 0; i < a.size(); ++i) {
       if (group.truth[i].ambiguous) continue;
       ++summary.compared;
-      summary.differing += a[i].status != b[i].status || ulps(a[i].t, b[i].t) > 4;
+      summary.differing += a[i].status != b[i].status || ulps(a[i].t, b[i].t) > equal_ulps;
     }
   }
   static double quantile(std::vector<double>& values) {
-    if (values.empty()) return 0;
+    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
     const auto rank = static_cast<std::size_t>(std::ceil(0.9999 * static_cast<double>(values.size())));
     const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
     std::nth_element(values.begin(), nth, values.end());

@@ -35,8 +35,7 @@ struct HardRow {
   std::string technique, case_name, backend;
   AddressMode address = AddressMode::repeat;
   ErrorFigures error;
-  std::uint64_t non_finite = 0;  ///< of all rays, ambiguous ones too
-  std::uint64_t not_inside = 0;  ///< start well below the surface, and the technique does not say `inside` at t = 0
+  std::uint64_t not_inside = 0;  ///< of rays right otherwise: start well below the surface, and not `inside` at t = 0
   std::string fault;             ///< which claim it breaks; empty: none
   std::optional<HardExample> example;
 

@@ -20,7 +20,7 @@ struct Line {
     missed += row.error.missed;
     false_hit += row.error.false_hit;
     exhausted += row.error.exhausted;
-    non_finite += row.non_finite;
+    non_finite += row.error.non_finite;
   }
 };
 
@@ -74,7 +74,7 @@ nlohmann::json json_of(const HardRow& row) {
                          {"missed", row.error.missed},
                          {"false", row.error.false_hit},
                          {"exhausted", row.error.exhausted},
-                         {"non_finite", row.non_finite},
+                         {"non_finite", row.error.non_finite},
                          {"steps", row.error.mean_steps},
                          {"fetches", row.error.mean_fetches},
                          {"uv_texels_max", row.error.uv_texels.max},
@@ -98,9 +98,9 @@ void print(const HardResult& result) {
   for (const HardSummary& summary : result.summaries) print_technique(result, summary);
   for (const HardSummary& s : result.summaries) {
     fmt::print(
-        "{}: {} rays judged, p99.99 of the right hits {:.2e} texel and {:.2e} in H; {} of {} rays differ between "
+        "{}: {} rays judged, p99.99 of the right hits {} texel and {} in H; {} of {} rays differ between "
         "backends\n",
-        s.technique, s.judged, s.uv_p9999, s.height_p9999, s.differing, s.compared);
+        s.technique, s.judged, error_text(s.uv_p9999), error_text(s.height_p9999), s.differing, s.compared);
   }
   for (const HardRow& row : result.rows) {
     if (row.fault.empty()) continue;

@@ -1,6 +1,7 @@
 /// The claims of a conformance run and the figures that they stand on.
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 
 #include "evaluation/evaluation.hpp"
 
@@ -35,7 +36,7 @@ void check_bound(const Rows& rows, const std::string& name, Bound bound, const c
     auto [relevant, figure, label] = value(row);
     if (!relevant) continue;
     ++count;
-    if (sign * figure >= sign * worst) continue;
+    if (std::isnan(worst) || sign * figure >= sign * worst) continue;  // nothing is worse than no figure
     worst = figure;
     where = label;
   }
@@ -64,15 +65,39 @@ bool holds_silhouette(const Registry& registry, const std::string& technique) {
   return found != registry.techniques.end() && found->second.first_hit != FirstHit::never;
 }
 
+namespace {
+
+/// Of techniques that claim to find the first hit always, on the bilinear surface.
+void check_first_hits(const Registry& registry, const std::vector<RayRow>& rows, std::vector<Check>& checks) {
+  std::uint64_t found = 0;
+  std::size_t count = 0;
+  std::string where;
+  for (const RayRow& row : rows) {
+    if (row.filter != "exact" || !always_finds_first_hit(registry, row.technique)) continue;
+    ++count;
+    const ErrorFigures& e = row.error;
+    const std::uint64_t here = e.missed + e.false_hit + e.wrong_layer + e.exhausted;
+    found += here;
+    if (here > 0) where = fmt::format("{} on {} at {}°, {}", row.technique, row.case_name, row.angle, row.backend);
+  }
+  check_none("rays missed, falsely hit, on a wrong layer or exhausted where first hits are certain", found, count,
+             where, checks);
+}
+
+}  // namespace
+
 void judge(const EvaluationInput& input, Evaluation& evaluation) {
   using Judged = std::tuple<bool, double, std::string>;
   std::vector<Check>& checks = evaluation.checks;
   check_bound(
-      evaluation.ray_agreements, "rays equal between backends", {Bound::least, rays_equal_percent}, " %",
+      evaluation.ray_agreements, fmt::format("rays equal between backends, t within {} ulp, filter exact", equal_ulps),
+      {Bound::least, rays_equal_percent}, " %",
       [](const RayAgreement& r) {
-        return Judged{true, r.equal_percent, fmt::format("{} on {} at {}°", r.technique, r.case_name, r.angle)};
+        return Judged{r.filter == "exact", r.equal_percent,
+                      fmt::format("{} on {} at {}°", r.technique, r.case_name, r.angle)};
       },
       checks);
+  check_first_hits(*input.registry, evaluation.rays, checks);
   check_bound(
       evaluation.picture_agreements, "pixels within 1/255 between backends", {Bound::least, pixels_within_percent},
       " %",
@@ -97,7 +122,8 @@ void judge(const EvaluationInput& input, Evaluation& evaluation) {
       evaluation.picture_agreements, "pixel offset against the oracle's picture where first hits are certain, p99",
       {Bound::most, offset_pixels}, " px",
       [&](const PictureAgreement& p) {
-        return Judged{p.offsets && always_finds_first_hit(*input.registry, p.technique),
+        const bool is_drawn = p.offsets && (p.offsets->judged > 0 || p.difference.mask_iou < 1);
+        return Judged{is_drawn && always_finds_first_hit(*input.registry, p.technique),
                       p.offsets ? p.offsets->pixels.p99 : 0, fmt::format("{} {} of {}", p.stage, p.technique, p.scene)};
       },
       checks);

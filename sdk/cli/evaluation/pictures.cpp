@@ -65,22 +65,16 @@ Status write_flip(const SceneRun& run, const std::string& file, const std::vecto
 Result<Pixels> run_picture(SceneRun& run, const std::string& stage, const std::string& technique) {
   Result<RenderResult> first = draw(run, stage, technique);
   if (!first) return tl::unexpected(first.error());
-  PictureRow row{run.scene_name,
-                 stage,
-                 technique,
-                 run.backend.info().name,
-                 "",
-                 "",
-                 "",
-                 first->seconds,
-                 true,
-                 first->degenerate_triangles};
+  PictureRow row{
+      run.scene_name, stage, technique, run.backend.info().name, "", "", "", -1, true, first->degenerate_triangles};
+  std::vector<double> seconds = {first->seconds};
   for (int i = 1; i < run.input.repeats; ++i) {
     Result<RenderResult> again = draw(run, stage, technique);
     if (!again) return tl::unexpected(again.error());
     row.repeatable = row.repeatable && again->color == first->color;
-    row.seconds = std::min(row.seconds, again->seconds);
+    seconds.push_back(again->seconds);
   }
+  row.seconds = median(seconds);
   if (!run.input.pictures.empty()) row.file = file_name(run, stage, technique);
   if (Status status = write_picture(run, file_name(run, stage, technique), first->color); !status)
     return tl::unexpected(status.error());
@@ -132,7 +126,7 @@ Result<std::optional<Reference>> reference_for(SceneRun& run, const StageDescrip
   Result<RenderResult> result = draw(run, drawn_by, "oracle");
   if (!result) return tl::unexpected(result.error());
   if (is_replayed(stage)) {
-    PictureRow row{run.scene_name, stage.name, "oracle", run.backend.info().name, "", "", "", result->seconds, true, 0};
+    PictureRow row{run.scene_name, stage.name, "oracle", run.backend.info().name, "", "", "", -1, true, 0};
     if (!run.input.pictures.empty()) row.file = file_name(run, stage.name, "oracle");
     run.evaluation.pictures.push_back(std::move(row));
     if (Status status = write_picture(run, file_name(run, stage.name, "oracle"), result->color); !status)
@@ -204,7 +198,7 @@ Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, E
   for (const auto& [name, parts] : input.scenes) {
     std::map<std::string, PicturesByCase> by_backend;
     for (auto& [backend_name, backend] : backends) {
-      MapSet& maps = input.baked->of(parts.height, backend_name);
+      MapSet& maps = input.baked->of(*input.registry, parts.height, backend_name, input.values);
       SceneRun run{input, name, parts, *backend, maps, evaluation, backend_name == backends.begin()->first};
       for (const auto& [stage_name, stage] : input.registry->stages) {
         if (stage.mesh == "none") continue;
@@ -249,7 +243,8 @@ Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Eva
     for (auto& [backend_name, backend] : backends) {
       if (!backend->info().features.contains("geometry")) continue;
       progress.advance(fmt::format("cracks {} {}", name, backend_name));
-      SceneRun run{input, name, parts, *backend, input.baked->of(parts.height, backend_name), evaluation, false};
+      MapSet& maps = input.baked->of(*input.registry, parts.height, backend_name, input.values);
+      SceneRun run{input, name, parts, *backend, maps, evaluation, false};
       Result<RenderResult> reference = draw(run, "vertex", "");
       if (!reference) return tl::unexpected(reference.error());
       for (const std::string& technique : input.techniques) {

@@ -1,6 +1,7 @@
 /// The `ray` stage: every technique against the oracle, and the backends against each other.
 #include <fmt/format.h>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "evaluation/evaluation.hpp"
@@ -17,6 +18,7 @@ constexpr std::size_t most_hits_at_once = std::size_t{1} << 21;
 struct RayRun {
   const EvaluationInput& input;
   const RayCase& ray_case;
+  std::map<std::string, double> values;  ///< with the case's scale
   std::vector<double> angles;
   std::vector<HeightFilter> filters;
   std::vector<std::vector<Ray>> rays;  ///< one set an angle
@@ -38,8 +40,7 @@ std::vector<TraceRequest> requests_of(const RayRun& run, const BackendInfo& back
   std::vector<TraceRequest> list;
   for (HeightFilter filter : run.filters) {
     for (const std::string& technique : run.input.techniques) {
-      TraceRequest request{technique, filter, count, values_on(*run.input.registry, backend, run.input.values)};
-      request.values.try_emplace("ray.scale", run.ray_case.scale);
+      TraceRequest request{technique, filter, count, values_on(*run.input.registry, backend, run.values)};
       list.push_back(std::move(request));
     }
   }
@@ -47,14 +48,12 @@ std::vector<TraceRequest> requests_of(const RayRun& run, const BackendInfo& back
 }
 
 RayAgreement agree(const std::vector<Hit>& truth, const std::vector<Hit>& a, const std::vector<Hit>& b) {
-  constexpr double relative = 1e-5;
   RayAgreement agreement;
   std::uint64_t equal = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (truth[i].ambiguous) continue;
     ++agreement.judged;
-    double size = std::max(std::abs(a[i].t), std::abs(b[i].t));
-    equal += a[i].status == b[i].status && std::abs(a[i].t - b[i].t) <= relative * size;
+    equal += a[i].status == b[i].status && ulps(a[i].t, b[i].t) <= equal_ulps;
   }
   agreement.equal_percent =
       agreement.judged ? 100.0 * static_cast<double>(equal) / static_cast<double>(agreement.judged) : 100.0;
@@ -66,16 +65,20 @@ Status bake_maps(const RayRun& run, Backend& backend, MapSet& maps, std::vector<
     Result<std::vector<std::string>> needed = required_maps(*run.input.registry, "ray", technique);
     if (!needed) return tl::unexpected(needed.error());
     for (const std::string& map : *needed) {
-      if (Status status = bake_map(backend, *run.input.registry, map, maps, run.input.values, &messages); !status)
+      if (Status status = bake_map(backend, *run.input.registry, map, maps, run.values, &messages); !status)
         return status;
     }
   }
   return {};
 }
 
+/// To time, the first angle is traced once more, before the others: drivers compile what they run first. Its commands
+/// lead every round.
 Result<JobResult> execute(const RayRun& run, Backend& backend, const MapSet& maps, bool count,
                           std::vector<std::string>& messages) {
-  Result<Job> job = make_trace_job(*run.input.registry, maps, run.rays, requests_of(run, backend.info(), count),
+  std::vector<std::vector<Ray>> sets = run.rays;
+  if (!count) sets.insert(sets.begin(), run.rays.front());
+  Result<Job> job = make_trace_job(*run.input.registry, maps, sets, requests_of(run, backend.info(), count),
                                    backend.info().shader_target, count ? 1 : run.input.repeats, count);
   if (!job) return tl::unexpected(job.error());
   Result<JobResult> result = backend.execute(*job);
@@ -84,7 +87,7 @@ Result<JobResult> execute(const RayRun& run, Backend& backend, const MapSet& map
 }
 
 Result<Answers> ask(const RayRun& run, Backend& backend, std::vector<std::string>& messages) {
-  MapSet& maps = run.input.baked->of(run.ray_case.height, backend.info().name);
+  MapSet& maps = run.input.baked->of(*run.input.registry, run.ray_case.height, backend.info().name, run.values);
   if (Status status = bake_maps(run, backend, maps, messages); !status) return tl::unexpected(status.error());
   Result<JobResult> counted = execute(run, backend, maps, true, messages);
   if (!counted) return tl::unexpected(counted.error());
@@ -96,8 +99,8 @@ Result<Answers> ask(const RayRun& run, Backend& backend, std::vector<std::string
   if (!run.input.time) return answers;
   Result<JobResult> timed = execute(run, backend, maps, false, messages);
   if (!timed) return tl::unexpected(timed.error());
-  const std::size_t round = answers.hits.size();
-  for (std::size_t i = 0; i < round && !timed->command_seconds.empty(); ++i) {
+  const std::size_t warm_up = run.requests(), round = warm_up + answers.hits.size();
+  for (std::size_t i = warm_up; i < round && !timed->command_seconds.empty(); ++i) {
     std::vector<double> seconds;
     for (std::size_t k = i; k < timed->command_seconds.size(); k += round) seconds.push_back(timed->command_seconds[k]);
     answers.seconds.push_back(median(seconds));
@@ -129,6 +132,7 @@ void add_agreements(const RayRun& run, std::size_t angle, std::size_t filter, co
     agreement.case_name = run.ray_case.name;
     agreement.technique = run.input.techniques[k];
     agreement.angle = run.angles[angle];
+    agreement.filter = to_string(run.filters[filter]);
     evaluation.ray_agreements.push_back(agreement);
   }
 }
@@ -145,8 +149,7 @@ Status run_case(const RayRun& run, OpenBackends& backends, Evaluation& evaluatio
   for (std::size_t a = 0; a < run.angles.size(); ++a) {
     for (std::size_t f = 0; f < run.filters.size(); ++f) {
       for (const auto& [name, answer] : answers) add_rows(run, a, f, name, answer, evaluation);
-      if (run.filters[f] == HeightFilter::exact && answers.size() > 1)
-        add_agreements(run, a, f, answers[0].second, answers[1].second, evaluation);
+      if (answers.size() > 1) add_agreements(run, a, f, answers[0].second, answers[1].second, evaluation);
     }
   }
   return {};
@@ -159,16 +162,26 @@ std::vector<RayRun> split(const EvaluationInput& input, const RayCase& ray_case)
   const std::size_t angles = std::max<std::size_t>(1, most_hits_at_once / std::max<std::size_t>(1, an_angle));
   std::vector<std::vector<HeightFilter>> filters = {{HeightFilter::exact, HeightFilter::hardware}};
   if (an_angle > most_hits_at_once) filters = {{HeightFilter::exact}, {HeightFilter::hardware}};
+  std::map<std::string, double> values = input.values;
+  set_scale(*input.registry, ray_case.scale, values);
   std::vector<RayRun> runs;
   for (std::size_t first = 0; first < ray_case.angles.size(); first += angles) {
     const auto from = ray_case.angles.begin() + static_cast<std::ptrdiff_t>(first);
     const auto to = from + static_cast<std::ptrdiff_t>(std::min(angles, ray_case.angles.size() - first));
-    for (const auto& some : filters) runs.push_back({input, ray_case, {from, to}, some, {}, {}});
+    for (const auto& some : filters) runs.push_back({input, ray_case, values, {from, to}, some, {}, {}});
   }
   return runs;
 }
 
 }  // namespace
+
+std::int64_t ulps(double a, double b) {
+  const auto ordered = [](double x) {
+    const auto bits = std::bit_cast<std::int32_t>(static_cast<float>(x));
+    return static_cast<std::int64_t>(bits >= 0 ? bits : std::int32_t{-0x7fffffff} - 1 - bits);
+  };
+  return std::abs(ordered(a) - ordered(b));
+}
 
 Status evaluate_rays(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress) {
   for (const RayCase& ray_case : input.ray_cases) {

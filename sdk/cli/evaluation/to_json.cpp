@@ -60,23 +60,21 @@ nlohmann::json to_json(const Evaluation& e) {
     return row;
   });
   result["ray_agreements"] = list(e.ray_agreements, [](const RayAgreement& r) {
-    return json{{"case", r.case_name},
-                {"technique", r.technique},
-                {"angle", r.angle},
-                {"judged", r.judged},
-                {"equal_percent", r.equal_percent}};
+    return json{{"case", r.case_name}, {"technique", r.technique}, {"filter", r.filter},
+                {"angle", r.angle},    {"judged", r.judged},       {"equal_percent", r.equal_percent}};
   });
   result["pictures"] = list(e.pictures, [](const PictureRow& p) {
-    return json{{"scene", p.scene},
+    json row = {{"scene", p.scene},
                 {"stage", p.stage},
                 {"technique", p.technique},
                 {"backend", p.backend},
                 {"file", p.file},
                 {"difference_file", p.difference_file},
                 {"flip_file", p.flip_file},
-                {"seconds", p.seconds},
                 {"repeatable", p.repeatable},
                 {"degenerate_triangles", p.degenerate_triangles}};
+    if (p.seconds >= 0) row["seconds"] = p.seconds;
+    return row;
   });
   result["picture_agreements"] = list(e.picture_agreements, agreement_json);
   result["cracks"] = list(e.cracks, [](const CrackRow& c) {

@@ -12,7 +12,7 @@ void mark_best(std::vector<SweepRow>& rows) {
   std::map<Place, std::vector<SweepRow*>> places;
   for (SweepRow& row : rows) {
     row.best = false;
-    if (row.ratio > 0) places[{row.map, row.angle, row.backend}].push_back(&row);
+    if (row.ratio > 0 && row.error.judged > 0) places[{row.map, row.angle, row.backend}].push_back(&row);
   }
   for (auto& [place, list] : places) {
     std::stable_sort(list.begin(), list.end(), [](const SweepRow* a, const SweepRow* b) {

@@ -61,10 +61,12 @@ std::string introduction(const Report& report) {
       "and against each "
       "other across backends: {} rays a row, the median of {} runs. Speed is quoted as a ratio to relief mapping in "
       "the same run, "
-      "beside the steps and texel reads that it took; the milliseconds are this machine's.</p>\n"
+      "beside the steps and texel reads that it took; the milliseconds are this machine's.{}</p>\n"
       "<p class=\"verdict {}\">{}</p>\n",
       escape(fmt::format("{}", fmt::join(report.techniques, ", "))), report.ray_image * report.ray_image,
-      report.repeats, failed == 0 ? "pass" : "fail", escape(verdict));
+      report.repeats,
+      report.values.empty() ? "" : escape(fmt::format(" Set otherwise than described: {}.", to_text(report.values))),
+      failed == 0 ? "pass" : "fail", escape(verdict));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ struct Report {
   std::vector<Phase> phases;
   std::vector<std::string> techniques;
   std::filesystem::path pictures;  ///< folder of Evaluation::pictures
+  ValueTexts values;               ///< of --set
   int ray_image = 0, repeats = 0;
 };
 

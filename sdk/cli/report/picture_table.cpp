@@ -70,11 +70,12 @@ std::string pictures_csv(const Evaluation& evaluation) {
   std::string text = "scene,stage,technique,backend,psnr,flip,offset_p50,offset_p99,offset_max,lost_percent,mask_iou\n";
   for (const PictureAgreement& a : evaluation.picture_agreements) {
     if (a.right != "oracle") continue;
-    text += fmt::format("{},{},{},{},{:.6g},{:.6g}", csv_field(a.scene), a.stage, csv_field(a.technique), a.left,
-                        a.difference.psnr, a.flip);
-    text += a.offsets ? fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g}", a.offsets->pixels.p50, a.offsets->pixels.p99,
-                                    a.offsets->pixels.max, a.offsets->lost_percent())
-                      : ",,,,";
+    text += fmt::format("{},{},{},{},{:.6g},{}", csv_field(a.scene), a.stage, csv_field(a.technique), a.left,
+                        a.difference.psnr, csv_number(a.flip));
+    text += a.offsets
+                ? fmt::format(",{},{},{},{}", csv_number(a.offsets->pixels.p50), csv_number(a.offsets->pixels.p99),
+                              csv_number(a.offsets->pixels.max), csv_number(a.offsets->lost_percent()))
+                : ",,,,";
     text += fmt::format(",{:.6g}\n", a.difference.mask_iou);
   }
   return text;

@@ -24,8 +24,7 @@ double wrong_lifted(const SweepRow& row) {
 /// Errors in H below this are the float's, and drawn at it.
 double height_lifted(const SweepRow& row) {
   constexpr double least = 1e-8;
-  std::uint64_t right = row.error.judged - row.error.missed - row.error.false_hit - row.error.wrong_layer;
-  return right == 0 ? -1 : std::max(row.error.height.p99, least);
+  return std::isnan(row.error.height.p99) ? -1 : std::max(row.error.height.p99, least);
 }
 double time_of(const SweepRow& row) {
   return row.ratio;

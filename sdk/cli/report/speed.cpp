@@ -29,13 +29,14 @@ std::string full_label(const SweepRow& row) {
 Cell winner(const Rows& rows) {
   const SweepRow* best = nullptr;
   for (const SweepRow* row : rows) {
-    if (row->ratio <= 0) continue;
+    if (row->ratio <= 0 || row->error.judged == 0) continue;
     bool better = !best || std::pair(row->wrong_percent(), row->ratio) < std::pair(best->wrong_percent(), best->ratio);
     if (better) best = row;
   }
   if (!best) return {"–"};
   if (best->wrong_percent() == 0) return {fmt::format("{} {:.2f}×", full_label(*best), best->ratio), "pass"};
-  return {fmt::format("none; {} {:.2f}×, wrong {:.3f} %", full_label(*best), best->ratio, best->wrong_percent())};
+  return {
+      fmt::format("none; {} {:.2f}×, wrong {} %", full_label(*best), best->ratio, percent_text(best->wrong_percent()))};
 }
 
 std::string winners_html(const Sweep& sweep) {
@@ -61,8 +62,8 @@ std::string best_html(const Sweep& sweep, const std::string& map) {
                       {label(row->setting), "name"},
                       {std::string(to_string(row->setting.filter))},
                       {fixed(row->ratio, 3)},
-                      {fixed(row->wrong_percent(), 3)},
-                      {fmt::format("{:.2g}", row->error.height.p99)},
+                      {percent_text(row->wrong_percent())},
+                      {error_text(row->error.height.p99)},
                       {fixed(row->error.mean_steps, 1)},
                       {fixed(row->error.mean_fetches, 1)}});
   }
@@ -93,7 +94,7 @@ std::string defaults_html(const Sweep& sweep, const std::string& map) {
     for (const SweepRow* row : rows_at(sweep, map, angle)) {
       if (!row->setting.loop.empty() || row->setting.filter != HeightFilter::exact) continue;
       if (line == rows.size()) rows.push_back({{row->setting.technique, "name"}});
-      rows[line].push_back({fixed(row->wrong_percent(), 3), row->wrong_percent() == 0 ? "pass" : ""});
+      rows[line].push_back({percent_text(row->wrong_percent()), row->wrong_percent() == 0 ? "pass" : ""});
       rows[line].push_back({fixed(row->ratio, 2)});
       rows[line++].push_back({fixed(row->error.mean_fetches, 1)});
     }

@@ -32,7 +32,8 @@ struct MapRun {
   const SweepPlan& plan;
   const RayCase& ray_case;
   const std::vector<Setting>& settings;
-  std::vector<std::vector<Ray>> rays;  ///< one set an angle
+  std::map<std::string, double> values;  ///< with the map's scale
+  std::vector<std::vector<Ray>> rays;    ///< one set an angle
   std::vector<std::vector<Hit>> truth;
   MapSet& maps;
   bool baked = false;
@@ -40,8 +41,7 @@ struct MapRun {
 
 TraceRequest request_of(const MapRun& run, const BackendInfo& backend, const Setting& setting, bool count_cost) {
   TraceRequest request{setting.technique, setting.filter, count_cost,
-                       values_on(*run.input.registry, backend, run.input.values)};
-  request.values.try_emplace("ray.scale", run.ray_case.scale);
+                       values_on(*run.input.registry, backend, run.values)};
   if (!setting.loop.empty()) request.values[setting.technique + "." + setting.loop] = setting.count;
   return request;
 }
@@ -55,7 +55,7 @@ Status bake_timed(Backend& backend, MapRun& run, const std::string& name, std::v
     if (Status status = bake_timed(backend, run, needed, costs); !status) return status;
   }
   auto start = std::chrono::steady_clock::now();
-  if (Status status = bake_map(backend, *run.input.registry, name, run.maps, run.input.values); !status) return status;
+  if (Status status = bake_map(backend, *run.input.registry, name, run.maps, run.values); !status) return status;
   const HeightMap& height = run.ray_case.height;
   costs.push_back({run.ray_case.name, name, height.width, height.height, texture_bytes(run.maps.find(name)->second),
                    seconds_since(start)});
@@ -123,21 +123,24 @@ Status count_some(MapRun& run, Backend& backend, std::size_t first, std::size_t 
 Status time_all(MapRun& run, Backend& backend, bool has_reference, std::vector<SweepRow>& rows) {
   std::vector<TraceRequest> requests;
   if (has_reference) {
-    TraceRequest reference{reference_technique, HeightFilter::hardware, false,
-                           values_on(*run.input.registry, backend.info(), {{"ray.scale", run.ray_case.scale}})};
-    requests.push_back(reference);
+    std::map<std::string, double> values;
+    set_scale(*run.input.registry, run.ray_case.scale, values);
+    requests.push_back({reference_technique, HeightFilter::hardware, false,
+                        values_on(*run.input.registry, backend.info(), std::move(values))});
   }
   for (const Setting& setting : run.settings) requests.push_back(request_of(run, backend.info(), setting, false));
-  Result<Job> job = make_trace_job(*run.input.registry, run.maps, run.rays, requests, backend.info().shader_target,
+  std::vector<std::vector<Ray>> sets = run.rays;
+  sets.insert(sets.begin(), run.rays.front());  // drivers compile what they run first: not timed
+  Result<Job> job = make_trace_job(*run.input.registry, run.maps, sets, requests, backend.info().shader_target,
                                    run.plan.repeats, false);
   if (!job) return tl::unexpected(job.error());
   Result<JobResult> result = backend.execute(*job);
   if (!result) return tl::unexpected(result.error());
   const std::vector<double>& seconds = result->command_seconds;
   if (seconds.size() != job->commands.size()) return {};  // no timestamps
-  std::size_t round = run.rays.size() * requests.size(), lead = has_reference ? 1 : 0;
+  std::size_t round = sets.size() * requests.size(), lead = has_reference ? 1 : 0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    std::size_t start = r / run.settings.size() * requests.size(), own = start + lead + r % run.settings.size();
+    std::size_t start = (1 + r / run.settings.size()) * requests.size(), own = start + lead + r % run.settings.size();
     std::vector<double> times, ratios;
     for (std::size_t at = 0; at < seconds.size(); at += round) {
       times.push_back(seconds[at + own]);
@@ -145,7 +148,7 @@ Status time_all(MapRun& run, Backend& backend, bool has_reference, std::vector<S
     }
     auto [fastest, slowest] = std::minmax_element(times.begin(), times.end());
     rows[r].seconds = median(times);
-    rows[r].spread = rows[r].seconds > 0 ? (*slowest - *fastest) / rows[r].seconds : -1;
+    rows[r].spread = rows[r].seconds > 0 && times.size() > 1 ? (*slowest - *fastest) / rows[r].seconds : -1;
     rows[r].ratio = median(ratios);
   }
   return {};
@@ -188,7 +191,10 @@ Status time_again(MapRun& run, Backend& backend, Sweep& sweep) {
 
 MapRun make_run(const EvaluationInput& input, const SweepPlan& plan, const RayCase& ray_case,
                 const std::vector<Setting>& settings) {
-  MapRun run{input, plan, ray_case, settings, {}, {}, input.baked->of(ray_case.height, "sweep")};
+  std::map<std::string, double> values = input.values;
+  set_scale(*input.registry, ray_case.scale, values);
+  MapSet& maps = input.baked->of(*input.registry, ray_case.height, "sweep", values);
+  MapRun run{input, plan, ray_case, settings, std::move(values), {}, {}, maps};
   Oracle oracle(ray_case.height);
   for (double angle : plan.angles) {
     run.rays.push_back(make_view_rays(angle, ray_case.scale, plan.image, plan.image));

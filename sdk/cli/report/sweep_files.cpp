@@ -19,13 +19,10 @@ nlohmann::json row_json(const SweepRow& row) {
                {"fetches", row.error.mean_fetches},
                {"best", row.best}});
   if (!row.setting.loop.empty()) json.update({{"loop", row.setting.loop}, {"count", row.setting.count}});
-  if (row.seconds >= 0) json.update({{"seconds", row.seconds}, {"spread", row.spread}});
+  if (row.seconds >= 0) json["seconds"] = row.seconds;
+  if (row.spread >= 0) json["spread"] = row.spread;
   if (row.ratio >= 0) json["ratio"] = row.ratio;
   return json;
-}
-
-std::string measured(double value) {
-  return value >= 0 ? fmt::format(",{:.6g}", value) : ",";
 }
 
 }  // namespace
@@ -71,8 +68,9 @@ std::string sweep_csv(const Sweep& sweep) {
     for (double figure : {e.wrong_percent(), e.percent(e.missed), e.percent(e.false_hit), e.percent(e.wrong_layer),
                           e.percent(e.exhausted), e.uv_texels.p50, e.uv_texels.p99, e.uv_texels.max, e.height.p50,
                           e.height.p99, e.height.max, e.mean_steps, e.mean_fetches})
-      text += fmt::format(",{:.6g}", figure);
-    text += fmt::format(",{}", r.best ? 1 : 0) + measured(r.seconds) + measured(r.spread) + measured(r.ratio) + "\n";
+      text += "," + csv_number(figure);
+    text += fmt::format(",{}", r.best ? 1 : 0) +
+            fmt::format(",{},{},{}\n", csv_number(r.seconds), csv_number(r.spread), csv_number(r.ratio));
   }
   return text;
 }

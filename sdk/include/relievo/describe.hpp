@@ -83,6 +83,10 @@ std::string value_text(const Parameter& parameter, double value);
 enum class TechniqueClass { non_iterative, unsafe, quasi_safe, safe, combined, reference };
 std::string_view to_string(TechniqueClass value);
 
+/// What a technique promises of the first hit, weakest first; a manifest's scene prunes what promises less.
+/// `always` alone is a guarantee: `conform`, hard cases and fuzzing hold a technique to it. `if_steps_under_texel`:
+/// likely where steps stay under a texel, never certain, for a ray that grazes the surface enters and leaves it within
+/// as little as one likes. `never`: nothing.
 enum class FirstHit { never, if_steps_under_texel, always };
 std::string_view to_string(FirstHit value);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -11,9 +12,9 @@
 
 namespace relievo {
 
-/// Quantiles over hits that are neither missed, false nor wrong-layer.
+/// Nearest-rank quantiles over hits that are neither missed, false nor wrong-layer; NaN where there are none.
 struct ErrorQuantiles {
-  double p50 = 0, p99 = 0, max = 0;
+  double p50 = std::numeric_limits<double>::quiet_NaN(), p99 = p50, max = p50;
 };
 
 struct ErrorFigures {
@@ -24,13 +25,16 @@ struct ErrorFigures {
   std::uint64_t false_hit = 0;    ///< technique hits, oracle does not
   std::uint64_t wrong_layer = 0;  ///< both hit, more than 1 texel in uv or 0.02 in H apart
   std::uint64_t exhausted = 0;    ///< technique ran out of steps
-  std::uint64_t non_finite = 0;   ///< NaN or Inf in any output
-  ErrorQuantiles uv_texels;       ///< |Δuv| in texels (max norm over the axes)
-  ErrorQuantiles height;          ///< |ΔH|
+  std::uint64_t non_finite =
+      0;  ///< of all rays: NaN in the technique's answer (Hit::sanitized), NaN or Inf in what comes out
+  ErrorQuantiles uv_texels;  ///< |Δuv| in texels (max norm over the axes)
+  ErrorQuantiles height;     ///< |ΔH|
   double mean_steps = 0, mean_fetches = 0;
 
+  /// Of the judged rays; NaN where there are none.
   double percent(std::uint64_t count) const {
-    return judged ? 100.0 * static_cast<double>(count) / static_cast<double>(judged) : 0.0;
+    return judged ? 100.0 * static_cast<double>(count) / static_cast<double>(judged)
+                  : std::numeric_limits<double>::quiet_NaN();
   }
   /// missed + false + wrong-layer, percent of judged rays.
   double wrong_percent() const { return percent(missed + false_hit + wrong_layer); }
@@ -71,7 +75,11 @@ struct PixelOffsets {
   std::uint64_t lost = 0;    ///< of these, the ones whose surface point the reference shows nowhere
   ErrorQuantiles pixels;     ///< distance over the others
 
-  double lost_percent() const { return judged ? 100.0 * static_cast<double>(lost) / static_cast<double>(judged) : 0.0; }
+  /// NaN where no pixel is judged.
+  double lost_percent() const {
+    return judged ? 100.0 * static_cast<double>(lost) / static_cast<double>(judged)
+                  : std::numeric_limits<double>::quiet_NaN();
+  }
 };
 
 /// How far the features of a picture lie from where the reference has them, in pixels. Both are pictures of one scene

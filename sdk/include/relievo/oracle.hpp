@@ -36,6 +36,7 @@ struct Hit {
   std::uint32_t steps = 0;    ///< loop iterations; for the oracle, cells visited
   std::uint32_t fetches = 0;  ///< texel reads
   bool ambiguous = false;     ///< oracle only: passes within `ambiguity` of the surface before its hit without crossing
+  bool sanitized = false;     ///< where costs are counted: the technique answered with NaN, and is made a miss at t = 0
 };
 
 struct OracleOptions {

@@ -35,10 +35,10 @@ RayGrid grid_of(std::size_t rays) {
 
 /// Twins of what shaders/stages/ray/ray.glsl reads and writes. A ray has vectors of four floats, a hit words.
 constexpr std::size_t ray_vectors = 2, vector_size = 4 * sizeof(float);
-enum HitWord { status_word, t_word, u_word, v_word, h_word, steps_word, fetches_word };
+enum HitWord { status_word, t_word, u_word, v_word, h_word, steps_word, fetches_word, sanitized_word };
 
 std::size_t hit_words(bool count_cost) {
-  return count_cost ? fetches_word + 1 : h_word + 1;
+  return count_cost ? sanitized_word + 1 : h_word + 1;
 }
 
 /// Whole tiles that a coordinate can shed without changing what it reads (lib/address.glsl has the twin).
@@ -111,6 +111,7 @@ Hit unpack(const PackedHit& packed, const Ray& ray) {
   hit.h = packed.number(h_word);
   hit.steps = packed.word(steps_word);
   hit.fetches = packed.word(fetches_word);
+  hit.sanitized = packed.word(sanitized_word) != 0;
   return hit;
 }
 

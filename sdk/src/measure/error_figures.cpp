@@ -27,7 +27,6 @@ struct Deviations {
 void judge(const Hit& reference, const Hit& measured, int width, int height, ErrorFigures& figures,
            Deviations& deviations) {
   ++figures.judged;
-  if (!is_finite(measured)) ++figures.non_finite;
   if (measured.status == HitStatus::exhausted) {
     ++figures.exhausted;
   } else if (is_hit(reference) && !is_hit(measured)) {
@@ -58,6 +57,7 @@ ErrorFigures compare_hits(std::span<const Hit> reference, std::span<const Hit> m
   for (std::size_t i = 0; i < figures.rays; ++i) {
     steps += measured[i].steps;
     fetches += measured[i].fetches;
+    figures.non_finite += measured[i].sanitized || !is_finite(measured[i]);
     if (reference[i].ambiguous)
       ++figures.ambiguous;
     else if (reference[i].status != HitStatus::exhausted)

@@ -150,6 +150,7 @@ int grid_size(const Image& reference) {
     if (!shows_surface(reference, i - 1) || !shows_surface(reference, i)) continue;
     steps.push_back(longest(step(surface_at(reference, i - 1), surface_at(reference, i))));
   }
+  if (steps.empty()) return least;
   return static_cast<int>(std::clamp(1 / std::max(quantiles(steps).p50, 1e-6), double{least}, double{most}));
 }
 

@@ -20,7 +20,7 @@ layout(std430, set = 0, binding = 3) writeonly buffer Hits { uint hits[]; };
 // Components of a hit, floats as their bits. u and v may lack whole tiles: those are to be added that bring them nearest to
 // the ray's point at t.
 const int RAY_STATUS = 0, RAY_T = 1, RAY_U = 2, RAY_V = 3, RAY_H = 4;
-const int RAY_STEPS = 5, RAY_FETCHES = 6;  // only where they are counted
+const int RAY_STEPS = 5, RAY_FETCHES = 6, RAY_SANITIZED = 7;  // only where costs are counted
 
 uint ray_index() { return gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * gl_WorkGroupSize.x) + gl_GlobalInvocationID.x; }
 
@@ -55,7 +55,9 @@ void main() {
   vec3 direction = ray_read(1).xyz;
   Ray ray = Ray(origin_limit.xyz, direction, origin_limit.w, ray_n_dot_v(direction));
   Hit hit = Hit(RELIEVO_MISS, 0.0, ray.origin);
-  if (relievo_is_valid(ray)) hit = relievo_view_trace(ray);
+  bool is_valid = relievo_is_valid(ray);
+  if (is_valid) hit = relievo_view_trace(ray);
+  bool is_sanitized = is_valid && relievo_is_nan(vec4(hit.point, hit.t));
   hit = relievo_sanitized(ray, hit);
   ray_write(RAY_STATUS, uint(hit.status));
   ray_write(RAY_T, floatBitsToUint(hit.t));
@@ -65,5 +67,6 @@ void main() {
 #if RELIEVO_COUNT
   ray_write(RAY_STEPS, relievo_steps);
   ray_write(RAY_FETCHES, relievo_fetches);
+  ray_write(RAY_SANITIZED, uint(is_sanitized));
 #endif
 }

@@ -22,14 +22,15 @@ struct BenchOptions {
   unsigned embree_threads = 2;
 };
 
-Result<std::vector<TraceRequest>> requests_of(const Registry& registry, const BenchOptions& options) {
+Result<std::vector<TraceRequest>> requests_of(const Registry& registry, const HeightMap& height,
+                                              const BenchOptions& options) {
   Result<std::vector<std::string>> names = technique_names(registry, options.techniques);
   if (!names) return tl::unexpected(names.error());
   Result<Settings> settings = parse_settings(registry, options.set, names->size() == 1 ? names->front() : "");
   if (!settings) return tl::unexpected(settings.error());
   Result<HeightFilter> filter = parse_height_filter(options.filter);
   if (!filter) return tl::unexpected(filter.error());
-  set_scale(registry, options.scale, settings->values);
+  set_scale(registry, options.scale, height, settings->values);
   std::vector<TraceRequest> requests;
   for (const std::string& name : *names) {
     auto own = settings->filters.find(name);
@@ -158,10 +159,10 @@ void print_table(const nlohmann::json& rows) {
 Status run_bench(const Context& context, const BenchOptions& options) {
   Result<Registry> registry = context.registry();
   if (!registry) return tl::unexpected(registry.error());
-  Result<std::vector<TraceRequest>> timing = requests_of(*registry, options);
-  if (!timing) return tl::unexpected(timing.error());
   Result<HeightMap> height = load_height(options.height, options.address);
   if (!height) return tl::unexpected(height.error());
+  Result<std::vector<TraceRequest>> timing = requests_of(*registry, *height, options);
+  if (!timing) return tl::unexpected(timing.error());
   std::vector<Ray> rays = make_view_rays(options.angle, options.scale, options.ray_image, options.ray_image);
   if (!options.rays.empty()) {
     Result<std::vector<Ray>> given = read_rays(options.rays);

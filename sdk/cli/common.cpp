@@ -197,14 +197,17 @@ Result<HeightMap> load_height(const std::string& path, const std::string& addres
   return map;
 }
 
-void set_scale(const Registry& registry, double scale, std::map<std::string, double>& values) {
+void set_scale(const Registry& registry, double scale, const HeightMap& map, std::map<std::string, double>& values) {
+  const double longer_sides = scale * map.width / std::max(map.width, map.height);
   const auto set = [&](const std::string& owner, const std::vector<Parameter>& parameters) {
     for (const Parameter& p : parameters) {
-      if (p.name == "scale") values.try_emplace(owner + ".scale", std::clamp(scale, p.minimum, p.maximum));
+      if (p.name != "scale") continue;
+      const double value = p.unit == "longer sides of the map" ? longer_sides : scale;
+      values.try_emplace(owner + ".scale", std::clamp(value, p.minimum, p.maximum));
     }
   };
   set("ray", registry.stages.at("ray").parameters);
-  for (const auto& [name, map] : registry.maps) set(name, map.parameters);
+  for (const auto& [name, descriptor] : registry.maps) set(name, descriptor.parameters);
 }
 
 Result<LoadedScene> load_scene_parts(const std::filesystem::path& path) {

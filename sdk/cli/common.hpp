@@ -74,9 +74,9 @@ Result<std::vector<std::string>> technique_names(const Registry& registry, const
 
 Result<HeightMap> load_height(const std::string& path, const std::string& address);
 
-/// Gives the lid's height (texture widths) to the stage `ray` and to every map that is baked for one: to their
-/// parameters of the name `scale`, within their ranges, as far as `values` leaves them open.
-void set_scale(const Registry& registry, double scale, std::map<std::string, double>& values);
+/// Gives the lid's height, in texture widths of `map`, to the stage `ray` and to every map that is baked for one: to
+/// their parameters of the name `scale`, in their units and ranges, as far as `values` leaves them open.
+void set_scale(const Registry& registry, double scale, const HeightMap& map, std::map<std::string, double>& values);
 
 /// The scene's parts, loaded: mesh files go through Assimp.
 struct LoadedScene {
@@ -106,7 +106,7 @@ double median(std::vector<double> values);
 
 /// "12.345"; "<0.001" for what would be rounded to nothing, "0" for nothing itself, "-" of no rays (NaN).
 std::string percent_text(double percent);
-/// "1.2e-03", or "-" of no values (NaN).
+/// "1.20e-03", or "-" of no values (NaN).
 std::string error_text(double error);
 
 nlohmann::json to_json(const ErrorFigures& figures);

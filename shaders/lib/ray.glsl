@@ -52,6 +52,12 @@ bool relievo_is_finite(vec4 x) { return all(notEqual(floatBitsToUint(x) & 0x7f80
 
 bool relievo_is_nan(vec4 x) { return any(greaterThan(floatBitsToUint(x) & 0x7fffffffu, uvec4(0x7f800000u))); }
 
+// The largest float for an infinite one.
+vec4 relievo_within_floats(vec4 x) {
+  uvec4 bits = floatBitsToUint(x);
+  return uintBitsToFloat((bits & 0x80000000u) | min(bits & 0x7fffffffu, uvec4(0x7f7fffffu)));
+}
+
 bool relievo_is_valid(Ray ray) {
   return all(bvec4(relievo_is_finite(ray.origin), relievo_is_finite(vec4(ray.direction, ray.t_max)),
                    ray.direction != vec3(0.0), ray.t_max >= 0.0));
@@ -62,6 +68,6 @@ bool relievo_is_valid(Ray ray) {
 Hit relievo_sanitized(Ray ray, Hit hit) {
   vec4 numbers = vec4(hit.point, hit.t);
   if (relievo_is_nan(numbers)) return Hit(RELIEVO_MISS, 0.0, relievo_is_finite(ray.origin) ? ray.origin : vec3(0.0));
-  numbers = clamp(numbers, vec4(-RELIEVO_NO_LIMIT), vec4(RELIEVO_NO_LIMIT));
+  numbers = relievo_within_floats(numbers);
   return Hit(hit.status, numbers.w, numbers.xyz);
 }

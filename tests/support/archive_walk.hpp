@@ -41,8 +41,8 @@ inline std::string contradiction_of(const Archive& archive) {
     for (const auto& [target, reason] : archive.absent(entry)) {
       for (const ShaderStage stage : stages) {
         const auto output = archive.output(entry, stage, target);
-        if (output || output.error().id != "archive.no-output") return "an absent target has an output";
-        if (output.error().message.find(reason) == std::string::npos)  // the sentence has every byte of the reason
+        if (output || output.error().id != "archive.no-output") continue;  // writers refuse that; opening does not look
+        if (output.error().message.find(reason) == std::string::npos)      // the sentence has every byte of the reason
           return "an absent target's reason is not told";
       }
     }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "common.hpp"
+#include "support/height_maps.hpp"
 
 namespace relievo::cli {
 namespace {
@@ -27,16 +28,16 @@ TEST(CliPercent, RoundsNothingToNothing) {
 TEST(CliScale, GoesToTheRaysAndToTheMapsThatAreBakedForIt) {
   const Registry registry = *load_registry();
   std::map<std::string, double> values = {{"normal.scale", 0.3}};
-  set_scale(registry, 0.25, values);
+  set_scale(registry, 0.25, test::ramp_map(8, 16), values);
   EXPECT_EQ(values.at("ray.scale"), 0.25);
-  EXPECT_EQ(values.at("distance_field.scale"), 0.25);
+  EXPECT_EQ(values.at("distance_field.scale"), 0.125) << "in longer sides";
   EXPECT_EQ(values.at("normal.scale"), 0.3) << "what is given stays";
 }
 
 TEST(CliScale, StaysWithinTheRange) {
   const Registry registry = *load_registry();
   std::map<std::string, double> values;
-  set_scale(registry, 1e-9, values);
+  set_scale(registry, 1e-9, test::ramp_map(8, 8), values);
   for (const auto& [name, value] : values) EXPECT_EQ(value, 1e-6) << name;
 }
 

@@ -20,6 +20,7 @@ struct Case {
     opengl.name = "opengl";
     evaluation.backends = {{opengl, {}}, {vulkan, {}}};
     evaluation.rays.push_back({"map", "exact", "vulkan", "exact", 20, {}});
+    evaluation.rays[0].error.judged = 1000;
     evaluation.ray_agreements.push_back({"map", "relief", "exact", 20, 1000000, 100});
     evaluation.ray_agreements.push_back({"map", "relief", "hardware", 20, 1000000, 98});
     evaluation.pictures.push_back({"ball", "prism", "relief", "vulkan", "", "", "", 0, true, 0});
@@ -71,6 +72,17 @@ TEST(Judge, FailsOneRayThatIsWrongWhereFirstHitsAreCertain) {
     bad.evaluation.rays[0].technique = "relief";
     EXPECT_EQ(bad.failures(), Names()) << "relief mapping claims no such thing";
   }
+}
+
+TEST(Judge, LetsRaysRunOutOfStepsWhereTheBudgetIsSetOrTheWayTooLong) {
+  Case budget;
+  budget.evaluation.rays[0].error.exhausted = 1;
+  budget.input.values["exact.max_steps"] = 16;
+  EXPECT_EQ(budget.failures(), Names());
+  Case far;
+  far.evaluation.rays[0].error.exhausted = 1;
+  far.input.ray_cases.push_back({"map", {}, 400});
+  EXPECT_EQ(far.failures(), Names()) << "1099 texture widths at 20°";
 }
 
 TEST(Judge, FailsAPictureThatShowsNothingWhereTheOracleDoes) {

@@ -81,7 +81,7 @@ std::map<std::string, double> values_of(const HardInput& input, const Group& gro
       }
     }
   }
-  set_scale(*input.registry, group.scale, values);
+  set_scale(*input.registry, group.scale, group.map, values);
   return values;
 }
 
@@ -97,7 +97,7 @@ struct Tally {
       if (truth.ambiguous || !is_hit(truth) || !is_hit(hit)) continue;
       const double du = std::abs(hit.u - truth.u) * group.map.width, dv = std::abs(hit.v - truth.v) * group.map.height;
       const double dh = std::abs(hit.h - truth.h);
-      if (!(std::max(du, dv) <= 1 && dh <= 0.02)) continue;  // another layer, or NaN: counted as wrong
+      if (!(du <= 1 && dv <= 1 && dh <= 0.02)) continue;  // another layer, or NaN: counted as wrong
       uv.push_back(std::max(du, dv));
       height.push_back(dh);
     }

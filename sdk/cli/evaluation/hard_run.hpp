@@ -46,8 +46,9 @@ struct HardRow {
 struct HardSummary {
   std::string technique;
   std::uint64_t judged = 0, faults = 0;
-  double uv_p9999 = 0, height_p9999 = 0;      ///< of hits on the right layer: texels; H
-  std::uint64_t compared = 0, differing = 0;  ///< between the first backend and the others: status, or t by > 4 ulp
+  double uv_p9999 = 0, height_p9999 = 0;  ///< of hits on the right layer: texels; H
+  std::uint64_t compared = 0,
+                differing = 0;  ///< between the first backend and the others: status, or t by more than equal_ulps
 };
 
 struct HardResult {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "evaluation/evaluation.hpp"
 #include "relievo/trace.hpp"
@@ -55,8 +56,9 @@ RayAgreement agree(const std::vector<Hit>& truth, const std::vector<Hit>& a, con
     ++agreement.judged;
     equal += a[i].status == b[i].status && ulps(a[i].t, b[i].t) <= equal_ulps;
   }
-  agreement.equal_percent =
-      agreement.judged ? 100.0 * static_cast<double>(equal) / static_cast<double>(agreement.judged) : 100.0;
+  agreement.equal_percent = agreement.judged
+                                ? 100.0 * static_cast<double>(equal) / static_cast<double>(agreement.judged)
+                                : std::numeric_limits<double>::quiet_NaN();
   return agreement;
 }
 
@@ -72,14 +74,11 @@ Status bake_maps(const RayRun& run, Backend& backend, MapSet& maps, std::vector<
   return {};
 }
 
-/// To time, the first angle is traced once more, before the others: drivers compile what they run first. Its commands
-/// lead every round.
+/// To time, in one round more than is counted: drivers compile what they run first.
 Result<JobResult> execute(const RayRun& run, Backend& backend, const MapSet& maps, bool count,
                           std::vector<std::string>& messages) {
-  std::vector<std::vector<Ray>> sets = run.rays;
-  if (!count) sets.insert(sets.begin(), run.rays.front());
-  Result<Job> job = make_trace_job(*run.input.registry, maps, sets, requests_of(run, backend.info(), count),
-                                   backend.info().shader_target, count ? 1 : run.input.repeats, count);
+  Result<Job> job = make_trace_job(*run.input.registry, maps, run.rays, requests_of(run, backend.info(), count),
+                                   backend.info().shader_target, count ? 1 : run.input.repeats + 1, count);
   if (!job) return tl::unexpected(job.error());
   Result<JobResult> result = backend.execute(*job);
   if (result) messages.insert(messages.end(), result->messages.begin(), result->messages.end());
@@ -99,10 +98,11 @@ Result<Answers> ask(const RayRun& run, Backend& backend, std::vector<std::string
   if (!run.input.time) return answers;
   Result<JobResult> timed = execute(run, backend, maps, false, messages);
   if (!timed) return tl::unexpected(timed.error());
-  const std::size_t warm_up = run.requests(), round = warm_up + answers.hits.size();
-  for (std::size_t i = warm_up; i < round && !timed->command_seconds.empty(); ++i) {
+  const std::size_t round = answers.hits.size();
+  for (std::size_t i = 0; i < round && !timed->command_seconds.empty(); ++i) {
     std::vector<double> seconds;
-    for (std::size_t k = i; k < timed->command_seconds.size(); k += round) seconds.push_back(timed->command_seconds[k]);
+    for (std::size_t k = round + i; k < timed->command_seconds.size(); k += round)
+      seconds.push_back(timed->command_seconds[k]);
     answers.seconds.push_back(median(seconds));
   }
   return answers;
@@ -163,7 +163,7 @@ std::vector<RayRun> split(const EvaluationInput& input, const RayCase& ray_case)
   std::vector<std::vector<HeightFilter>> filters = {{HeightFilter::exact, HeightFilter::hardware}};
   if (an_angle > most_hits_at_once) filters = {{HeightFilter::exact}, {HeightFilter::hardware}};
   std::map<std::string, double> values = input.values;
-  set_scale(*input.registry, ray_case.scale, values);
+  set_scale(*input.registry, ray_case.scale, ray_case.height, values);
   std::vector<RayRun> runs;
   for (std::size_t first = 0; first < ray_case.angles.size(); first += angles) {
     const auto from = ray_case.angles.begin() + static_cast<std::ptrdiff_t>(first);

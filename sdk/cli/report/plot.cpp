@@ -186,7 +186,9 @@ Plot draw_plot(const Sweep& sweep, const std::string& map, const PlotKind& kind,
   Plot plot{map, &kind, "", ""};
   std::string script = plot_script(sweep, map, kind, angles);
   if (script.empty()) {
-    plot.problem = "the backend has no timestamps";
+    const bool is_timed =
+        std::any_of(sweep.rows.begin(), sweep.rows.end(), [](const SweepRow& r) { return r.ratio > 0; });
+    plot.problem = is_timed ? "no setting has a hit that is right" : "the backend has no timestamps";
     return plot;
   }
   Drawing drawing = run_gnuplot(script, identifier(sweep, map, kind));

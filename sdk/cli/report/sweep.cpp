@@ -84,7 +84,8 @@ HeatMap heat_map(const MapRun& run, const Setting& setting, const std::vector<Hi
     ErrorFigures one = compare_hits({&truth[i], 1}, {&hits[i], 1}, height.width, height.height);
     bool right = one.missed + one.false_hit + one.wrong_layer + one.exhausted == 0;
     heat.steps.push_back(one.judged ? static_cast<float>(hits[i].steps) : nothing);
-    heat.texels.push_back(!one.judged ? nothing : right ? static_cast<float>(one.uv_texels.max) : wrong);
+    const float texels = std::isnan(one.uv_texels.max) ? 0 : static_cast<float>(one.uv_texels.max);  // rightly no hit
+    heat.texels.push_back(!one.judged ? nothing : right ? texels : wrong);
   }
   return heat;
 }
@@ -124,7 +125,7 @@ Status time_all(MapRun& run, Backend& backend, bool has_reference, std::vector<S
   std::vector<TraceRequest> requests;
   if (has_reference) {
     std::map<std::string, double> values;
-    set_scale(*run.input.registry, run.ray_case.scale, values);
+    set_scale(*run.input.registry, run.ray_case.scale, run.ray_case.height, values);
     requests.push_back({reference_technique, HeightFilter::hardware, false,
                         values_on(*run.input.registry, backend.info(), std::move(values))});
   }
@@ -192,7 +193,7 @@ Status time_again(MapRun& run, Backend& backend, Sweep& sweep) {
 MapRun make_run(const EvaluationInput& input, const SweepPlan& plan, const RayCase& ray_case,
                 const std::vector<Setting>& settings) {
   std::map<std::string, double> values = input.values;
-  set_scale(*input.registry, ray_case.scale, values);
+  set_scale(*input.registry, ray_case.scale, ray_case.height, values);
   MapSet& maps = input.baked->of(*input.registry, ray_case.height, "sweep", values);
   MapRun run{input, plan, ray_case, settings, std::move(values), {}, {}, maps};
   Oracle oracle(ray_case.height);

@@ -27,7 +27,7 @@ struct SweepRow {
   double seconds = -1;  ///< median of the repeats; −1 without timestamps
   double spread = -1;   ///< (slowest − fastest) / median of the repeats
   double ratio = -1;    ///< median over the repeats of the time over that of the reference just before it
-  bool best = false;    ///< no other row of its map, angle and backend is at once faster and less wrong
+  bool best = false;    ///< every faster row of its map, angle and backend is more often wrong
 
   /// A ray whose budget runs out is wrong too, here.
   double wrong_percent() const { return error.wrong_percent() + error.percent(error.exhausted); }

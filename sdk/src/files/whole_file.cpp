@@ -51,6 +51,8 @@ std::vector<std::uint8_t> read_all(std::FILE* file, std::uintmax_t expected) {
 
 /// Empty when all is well, else the system's reason.
 std::string replace(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  std::error_code not_there;
+  if (fs::is_symlink(path, not_there)) return std::strerror(ELOOP);  // where links end, there is none
   files::sweep_beside(path);
   fs::path temporary;
   const files::File file = files::create_beside(path, ".tmp", temporary);

@@ -26,7 +26,7 @@ Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path, c
 bool is_written_in_place(const std::filesystem::path& path);
 
 /// Writes a file under a temporary name beside it and renames it when it is complete, so that nobody ever sees half of
-/// it; through a symbolic link, which stays. What is_written_in_place is. Errors: "<kind>.write".
+/// it; through a symbolic link, which stays. A pipe or device is written in place. Errors: "<kind>.write".
 Status write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes, const std::string& kind);
 
 }  // namespace relievo

@@ -85,6 +85,8 @@ Status check_replaceable(const fs::path& path) {
   const fs::file_status status = fs::status(path, ignored);
   if (!path.has_filename() || fs::is_directory(status))
     return file_error(path, "archive.write", "is a folder; expected the name of a file");
+  if (fs::is_symlink(files::link_target(path), ignored))
+    return file_error(path, "archive.write", "is a link that leads nowhere but to links");
   if (fs::exists(status) && !fs::is_regular_file(status))
     return file_error(path, "archive.write", "is no regular file, and is not replaced");
   return {};

@@ -89,8 +89,7 @@ struct RayAgreement {
 
 /// Hits of two backends are equal that differ by no more steps between floats of t.
 inline constexpr std::int64_t equal_ulps = 4;
-/// Steps between two floats.
-std::int64_t ulps(double a, double b);
+bool are_equal(const Hit& a, const Hit& b);
 
 /// One picture.
 struct PictureRow {

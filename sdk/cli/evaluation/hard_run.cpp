@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
-#include <limits>
 
+#include "measure/quantiles.hpp"
 #include "relievo/trace.hpp"
 
 namespace relievo::cli {
@@ -106,15 +106,8 @@ struct Tally {
     for (std::size_t i = 0; i < a.size(); ++i) {
       if (group.truth[i].ambiguous) continue;
       ++summary.compared;
-      summary.differing += a[i].status != b[i].status || ulps(a[i].t, b[i].t) > equal_ulps;
+      summary.differing += !are_equal(a[i], b[i]);
     }
-  }
-  static double quantile(std::vector<double>& values) {
-    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-    const auto rank = static_cast<std::size_t>(std::ceil(0.9999 * static_cast<double>(values.size())));
-    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
-    std::nth_element(values.begin(), nth, values.end());
-    return *nth;
   }
 };
 
@@ -150,8 +143,8 @@ class Run {
     for (std::size_t k = 0; k < tallies_.size(); ++k) {
       HardSummary& summary = tallies_[k].summary;
       summary.technique = input_.techniques[k];
-      summary.uv_p9999 = Tally::quantile(tallies_[k].uv);
-      summary.height_p9999 = Tally::quantile(tallies_[k].height);
+      summary.uv_p9999 = quantile(tallies_[k].uv, 0.9999);
+      summary.height_p9999 = quantile(tallies_[k].height, 0.9999);
       for (const HardRow& row : result_.rows) {
         if (row.technique != summary.technique) continue;
         summary.judged += row.error.judged;

@@ -48,13 +48,22 @@ std::vector<TraceRequest> requests_of(const RayRun& run, const BackendInfo& back
   return list;
 }
 
+/// Steps between two floats.
+std::int64_t ulps(double a, double b) {
+  const auto ordered = [](double x) {
+    const auto bits = std::bit_cast<std::int32_t>(static_cast<float>(x));
+    return static_cast<std::int64_t>(bits >= 0 ? bits : std::int32_t{-0x7fffffff} - 1 - bits);
+  };
+  return std::abs(ordered(a) - ordered(b));
+}
+
 RayAgreement agree(const std::vector<Hit>& truth, const std::vector<Hit>& a, const std::vector<Hit>& b) {
   RayAgreement agreement;
   std::uint64_t equal = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (truth[i].ambiguous) continue;
     ++agreement.judged;
-    equal += a[i].status == b[i].status && ulps(a[i].t, b[i].t) <= equal_ulps;
+    equal += are_equal(a[i], b[i]);
   }
   agreement.equal_percent = agreement.judged
                                 ? 100.0 * static_cast<double>(equal) / static_cast<double>(agreement.judged)
@@ -175,12 +184,8 @@ std::vector<RayRun> split(const EvaluationInput& input, const RayCase& ray_case)
 
 }  // namespace
 
-std::int64_t ulps(double a, double b) {
-  const auto ordered = [](double x) {
-    const auto bits = std::bit_cast<std::int32_t>(static_cast<float>(x));
-    return static_cast<std::int64_t>(bits >= 0 ? bits : std::int32_t{-0x7fffffff} - 1 - bits);
-  };
-  return std::abs(ordered(a) - ordered(b));
+bool are_equal(const Hit& a, const Hit& b) {
+  return a.status == b.status && ulps(a.t, b.t) <= equal_ulps;
 }
 
 Status evaluate_rays(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress) {

@@ -6,8 +6,6 @@
 
 namespace relievo {
 
-namespace {
-
 double quantile(std::vector<double>& values, double q) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
@@ -15,8 +13,6 @@ double quantile(std::vector<double>& values, double q) {
   std::nth_element(values.begin(), nth, values.end());
   return *nth;
 }
-
-}  // namespace
 
 ErrorQuantiles quantiles(std::vector<double>& values) {
   return {quantile(values, 0.50), quantile(values, 0.99), quantile(values, 1.0)};

@@ -6,8 +6,9 @@
 
 namespace relievo {
 
-/// Nearest-rank quantiles: the smallest value that at least that share of the values do not exceed; 0 of no values.
+/// Nearest rank: the smallest value that at least the share `q` of the values do not exceed; NaN of no values.
 /// Reorders `values`.
+double quantile(std::vector<double>& values, double q);
 ErrorQuantiles quantiles(std::vector<double>& values);
 
 }  // namespace relievo

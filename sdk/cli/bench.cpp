@@ -109,14 +109,13 @@ class Timing {
         requests_(requests),
         results_(requests.size()) {}
 
-  /// A first round more is not counted: drivers compile what they run first.
   Status run(int rounds) {
-    Result<std::vector<TraceResult>> traced = trace(backend_, registry_, maps_, rays_, requests_, rounds + 1);
+    Result<std::vector<TraceResult>> traced = trace(backend_, registry_, maps_, rays_, requests_, {rounds, true});
     if (!traced) return tl::unexpected(traced.error());
     for (std::size_t k = 0; k < results_.size(); ++k) {
       const std::vector<double>& seconds = (*traced)[k].seconds;
       results_[k].hits = std::move((*traced)[k].hits);
-      if (!seconds.empty()) results_[k].seconds.insert(results_[k].seconds.end(), seconds.begin() + 1, seconds.end());
+      results_[k].seconds.insert(results_[k].seconds.end(), seconds.begin(), seconds.end());
     }
     return {};
   }

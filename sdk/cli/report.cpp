@@ -88,6 +88,7 @@ EvaluationInput input_to_judge(EvaluationInput input, const ReportOptions& optio
   for (RayCase& ray_case : input.ray_cases) ray_case.angles = plan_of(options).angles;
   input.ray_image = std::min(input.ray_image, quick_image);
   input.repeats = 1;
+  input.crack_seeds = 1;
   if (input.backends.size() > 1 && swept_maps > 1)
     not_run.push_back({"sweep of all height maps but the first on all backends but the first",
                        "--quick sweeps them on one: errors hardly differ"});

@@ -46,7 +46,7 @@ Result<std::vector<Hit>> trace_on(const Context& context, const TraceOptions& op
   MapSet maps = map_set(height);
   std::vector<std::string> messages;
   Result<std::vector<TraceResult>> traced =
-      trace(**backend, *registry, maps, rays, std::span(&request, 1), 1, &messages);
+      trace(**backend, *registry, maps, rays, std::span(&request, 1), {}, &messages);
   for (const std::string& message : messages) fmt::print(stderr, "{}\n", message);
   if (!traced) return tl::unexpected(traced.error());
   return std::move(traced->front().hits);

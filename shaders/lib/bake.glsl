@@ -1,4 +1,5 @@
-// Host of a map's bake module: runs relievo_bake once for every texel of the map (of every layer, if it has several).
+// Host of a map's bake module: runs relievo_bake once for every texel of the map (of every layer, if it has several; or of every
+// RELIEVO_BAKE_LAYERS_AT_ONCE layers, which one run then writes).
 // A module defines `void relievo_bake(ivec2 texel)`, reads its input maps and writes with relievo_bake_write. Each phase of its
 // passes is a program of its own: drivers compile conditions on a uniform anew for every value that it has.
 #include "ray.glsl"
@@ -9,18 +10,29 @@ layout(std140, set = 0, binding = 1) uniform Bake {
   ivec4 relievo_bake_size;    // width, height, channels, level
   ivec4 relievo_bake_source;  // of the level below: width, height, offset; offset of this level, in texels
   ivec4 relievo_bake_layers;  // how many, pass, floats in a buffer, the first of this dispatch
+  ivec4 relievo_bake_slab;    // layers of this dispatch
 };
 #include "bake_buffers.glsl"
 
 ivec2 relievo_bake_extent() { return relievo_bake_size.xy; }
 
-int relievo_bake_layer() { return relievo_bake_layers.w + int(gl_GlobalInvocationID.z); }
+// The layer of this run, or the first of several.
+int relievo_bake_layer() {
+  return relievo_bake_layers.w + int(gl_GlobalInvocationID.z) * RELIEVO_BAKE_LAYERS_AT_ONCE;
+}
 int relievo_bake_layer_count() { return relievo_bake_layers.x; }
+
+// Whether a layer is among those of this dispatch: the last run may have fewer than the others.
+bool relievo_bake_has_layer(int layer) { return layer < relievo_bake_layers.w + relievo_bake_slab.x; }
 
 // Where a value of this level lies among the layers that are baked together.
 int relievo_bake_index(ivec2 texel, int layer, int channel) {
   int row = (layer - relievo_bake_layers.w) * relievo_bake_size.y + texel.y;
   return (relievo_bake_source.w + row * relievo_bake_size.x + texel.x) * relievo_bake_size.z + channel;
+}
+
+void relievo_bake_write_layer(ivec2 texel, int layer, int channel, float value) {
+  if (relievo_bake_has_layer(layer)) relievo_map_store(relievo_bake_index(texel, layer, channel), value);
 }
 
 void relievo_bake_write(ivec2 texel, int channel, float value) {

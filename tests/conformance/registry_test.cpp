@@ -93,7 +93,7 @@ TEST_F(TemplateTechnique, TracesOnBothBackendsWithItsOwnMap) {
   for (const std::string& name : both_backends) {
     MapSet maps = map_set(map);
     std::vector<std::string> messages;
-    const auto traced = trace(backend(name), registry_, maps, rays, {&request, 1}, 1, &messages);
+    const auto traced = trace(backend(name), registry_, maps, rays, {&request, 1}, {}, &messages);
     ASSERT_TRUE(traced) << format(traced.error());
     EXPECT_THAT(messages, ::testing::IsEmpty());
     EXPECT_TRUE(maps.contains("template_slope")) << "its map is baked without a line of C++";

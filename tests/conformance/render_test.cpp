@@ -116,7 +116,7 @@ TEST(Render, SeveralMeshesGiveThePicturesThatEachGives) {
   for (const char* technique : {"relief", "oracle"}) {
     MapSet maps = map_set(hills());
     const RenderRequest request = request_of("prism", technique);
-    const auto together = render(backend("vulkan"), registry(), scene, std::span(meshes), maps, request);
+    const auto together = render(backend("vulkan"), registry(), scene, std::span(meshes), maps, {&request, 1});
     ASSERT_TRUE(together) << format(together.error());
     ASSERT_EQ(together->size(), 2U);
     for (std::size_t k = 0; k < 2; ++k)

@@ -34,11 +34,11 @@ class TraceSets : public ::testing::TestWithParam<std::string> {
   std::vector<Hit> trace_alone(std::size_t set, std::size_t request) const {
     const auto job = make_trace_job(registry(), maps_, sets_[set], {&requests_[request], 1}, target());
     EXPECT_TRUE(job) << format(job.error());
-    return read_trace(*job, run(*job), sets_[set], 1).at(0).hits;
+    return read_trace(run(*job), sets_[set], 1).at(0).hits;
   }
 
   Job job_of_all(bool read) const {
-    const Result<Job> job = make_trace_job(registry(), maps_, sets_, requests_, target(), 2, read);
+    const Result<Job> job = make_trace_job(registry(), maps_, sets_, requests_, target(), {2, false}, read);
     EXPECT_TRUE(job) << format(job.error());
     return job ? *job : Job{};
   }
@@ -98,7 +98,7 @@ TEST_P(TraceSets, WithoutReadHitsNothingComesBackButTimes) {
 
 TEST_P(TraceSets, NoSetsAreAJobThatDoesNothing) {
   const auto none =
-      make_trace_job(registry(), maps_, std::span<const std::vector<Ray>>{}, requests_, target(), 2, true);
+      make_trace_job(registry(), maps_, std::span<const std::vector<Ray>>{}, requests_, target(), {2, false}, true);
   ASSERT_TRUE(none) << format(none.error());
   EXPECT_TRUE(none->commands.empty());
   EXPECT_TRUE(none->read_backs.empty());
@@ -107,7 +107,7 @@ TEST_P(TraceSets, NoSetsAreAJobThatDoesNothing) {
 
 TEST_P(TraceSets, ASetWithoutRaysIsRefused) {
   sets_[1].clear();
-  const auto refused = make_trace_job(registry(), maps_, sets_, requests_, target(), 2, true);
+  const auto refused = make_trace_job(registry(), maps_, sets_, requests_, target(), {2, false}, true);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().id, "trace.no-rays");
 }

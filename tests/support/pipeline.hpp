@@ -64,7 +64,7 @@ inline std::vector<Hit> trace_on(const std::string& name, const HeightMap& map, 
                                  const TraceRequest& request, const Registry& from = registry()) {
   MapSet maps = map_set(map);
   std::vector<std::string> messages;
-  Result<std::vector<TraceResult>> traced = trace(backend(name), from, maps, rays, {&request, 1}, 1, &messages);
+  Result<std::vector<TraceResult>> traced = trace(backend(name), from, maps, rays, {&request, 1}, {}, &messages);
   EXPECT_THAT(messages, ::testing::IsEmpty()) << name;
   if (!traced) {
     ADD_FAILURE() << name << ": " << format(traced.error());

@@ -65,6 +65,7 @@ struct EvaluationInput {
   std::map<std::string, double> values;                     ///< "owner.parameter"
   int ray_image = 1024;                                     ///< rays a case: ray_image²
   int repeats = 3;                                          ///< timed rounds, and runs that must be byte-identical
+  std::uint64_t crack_seeds = 3;                            ///< random vertex orders that prisms are drawn in
   bool time = true;
   std::filesystem::path pictures;  ///< folder for PNGs; empty = none are written
   std::shared_ptr<BakedMaps> baked = std::make_shared<BakedMaps>();

@@ -124,7 +124,7 @@ class Run {
     const auto start = std::chrono::steady_clock::now();
     MapSet maps = map_set(round.map);
     Result<std::vector<TraceResult>> traced =
-        trace(*backends_.at(row.backend), *input_.registry, maps, round.rays, {&request, 1}, 1, &result_.messages);
+        trace(*backends_.at(row.backend), *input_.registry, maps, round.rays, {&request, 1}, {}, &result_.messages);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     watchdog_.rest();
     row.calls += round.rays.size();

@@ -159,7 +159,7 @@ class Run {
                                       MapSet& maps) {
     const TraceRequest request{technique, HeightFilter::exact, true, values_of(input_, group)};
     Result<std::vector<TraceResult>> traced =
-        trace(backend, *input_.registry, maps, group.rays, {&request, 1}, 1, &result_.messages);
+        trace(backend, *input_.registry, maps, group.rays, {&request, 1}, {}, &result_.messages);
     if (!traced) return tl::unexpected(traced.error());
     return std::move(traced->front().hits);
   }

@@ -83,11 +83,11 @@ Status bake_maps(const RayRun& run, Backend& backend, MapSet& maps, std::vector<
   return {};
 }
 
-/// To time, in one round more than is counted: drivers compile what they run first.
-Result<JobResult> execute(const RayRun& run, Backend& backend, const MapSet& maps, bool count,
+/// To count what happens, in one round; or to time it.
+Result<JobResult> execute(const RayRun& run, Backend& backend, const MapSet& maps, TraceRounds rounds, bool count,
                           std::vector<std::string>& messages) {
   Result<Job> job = make_trace_job(*run.input.registry, maps, run.rays, requests_of(run, backend.info(), count),
-                                   backend.info().shader_target, count ? 1 : run.input.repeats + 1, count);
+                                   backend.info().shader_target, rounds, count);
   if (!job) return tl::unexpected(job.error());
   Result<JobResult> result = backend.execute(*job);
   if (result) messages.insert(messages.end(), result->messages.begin(), result->messages.end());
@@ -97,7 +97,7 @@ Result<JobResult> execute(const RayRun& run, Backend& backend, const MapSet& map
 Result<Answers> ask(const RayRun& run, Backend& backend, std::vector<std::string>& messages) {
   MapSet& maps = run.input.baked->of(*run.input.registry, run.ray_case.height, backend.info().name, run.values);
   if (Status status = bake_maps(run, backend, maps, messages); !status) return tl::unexpected(status.error());
-  Result<JobResult> counted = execute(run, backend, maps, true, messages);
+  Result<JobResult> counted = execute(run, backend, maps, {}, true, messages);
   if (!counted) return tl::unexpected(counted.error());
   Answers answers;
   for (std::size_t i = 0; i < counted->read_backs.size(); ++i) {
@@ -105,15 +105,11 @@ Result<Answers> ask(const RayRun& run, Backend& backend, std::vector<std::string
     counted->read_backs[i] = {};
   }
   if (!run.input.time) return answers;
-  Result<JobResult> timed = execute(run, backend, maps, false, messages);
+  const TraceRounds rounds{run.input.repeats, true};
+  Result<JobResult> timed = execute(run, backend, maps, rounds, false, messages);
   if (!timed) return tl::unexpected(timed.error());
-  const std::size_t round = answers.hits.size();
-  for (std::size_t i = 0; i < round && !timed->command_seconds.empty(); ++i) {
-    std::vector<double> seconds;
-    for (std::size_t k = round + i; k < timed->command_seconds.size(); k += round)
-      seconds.push_back(timed->command_seconds[k]);
+  for (const std::vector<double>& seconds : trace_seconds(*timed, run.rays.size(), run.requests(), rounds))
     answers.seconds.push_back(median(seconds));
-  }
   return answers;
 }
 

@@ -101,7 +101,7 @@ Status count_some(MapRun& run, Backend& backend, std::size_t first, std::size_t 
   std::vector<TraceRequest> requests;
   for (std::size_t k = first; k < last; ++k) requests.push_back(request_of(run, backend.info(), run.settings[k], true));
   Result<Job> job =
-      make_trace_job(*run.input.registry, run.maps, run.rays, requests, backend.info().shader_target, 1, true);
+      make_trace_job(*run.input.registry, run.maps, run.rays, requests, backend.info().shader_target, {}, true);
   if (!job) return tl::unexpected(job.error());
   Result<JobResult> result = backend.execute(*job);
   if (!result) return tl::unexpected(result.error());
@@ -130,22 +130,20 @@ Status time_all(MapRun& run, Backend& backend, bool has_reference, std::vector<S
                         values_on(*run.input.registry, backend.info(), std::move(values))});
   }
   for (const Setting& setting : run.settings) requests.push_back(request_of(run, backend.info(), setting, false));
-  std::vector<std::vector<Ray>> sets = run.rays;
-  sets.insert(sets.begin(), run.rays.front());  // drivers compile what they run first: not timed
-  Result<Job> job = make_trace_job(*run.input.registry, run.maps, sets, requests, backend.info().shader_target,
-                                   run.plan.repeats, false);
+  const TraceRounds rounds{run.plan.repeats, true};
+  Result<Job> job =
+      make_trace_job(*run.input.registry, run.maps, run.rays, requests, backend.info().shader_target, rounds, false);
   if (!job) return tl::unexpected(job.error());
   Result<JobResult> result = backend.execute(*job);
   if (!result) return tl::unexpected(result.error());
-  const std::vector<double>& seconds = result->command_seconds;
-  if (seconds.size() != job->commands.size()) return {};  // no timestamps
-  std::size_t round = sets.size() * requests.size(), lead = has_reference ? 1 : 0;
+  if (result->command_seconds.empty()) return {};  // no timestamps
+  const std::vector<std::vector<double>> seconds = trace_seconds(*result, run.rays.size(), requests.size(), rounds);
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    std::size_t start = (1 + r / run.settings.size()) * requests.size(), own = start + lead + r % run.settings.size();
-    std::vector<double> times, ratios;
-    for (std::size_t at = 0; at < seconds.size(); at += round) {
-      times.push_back(seconds[at + own]);
-      if (has_reference && seconds[at + start] > 0) ratios.push_back(seconds[at + own] / seconds[at + start]);
+    const std::size_t first = r / run.settings.size() * requests.size();  // of the row's angle: the reference, if any
+    const std::vector<double>& times = seconds[first + (has_reference ? 1 : 0) + r % run.settings.size()];
+    std::vector<double> ratios;
+    for (std::size_t k = 0; has_reference && k < times.size(); ++k) {
+      if (seconds[first][k] > 0) ratios.push_back(times[k] / seconds[first][k]);
     }
     auto [fastest, slowest] = std::minmax_element(times.begin(), times.end());
     rows[r].seconds = median(times);

@@ -130,6 +130,7 @@ struct MapDescriptor {
   std::vector<int> passes = {1};
   /// Address modes with which the passes of a layer read no other layer; where there is one pass, all.
   std::vector<std::string> layers_apart;
+  int layers_at_once = 1;  ///< that one run of the module writes (RELIEVO_BAKE_LAYERS_AT_ONCE)
   /// One a channel, for maps that have an int parameter `bits` (8, 16 or 32): 8 and 16 are stored as unorm. Empty:
   /// floats.
   std::vector<Rounding> rounding;

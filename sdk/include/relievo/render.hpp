@@ -43,18 +43,20 @@ Result<std::vector<std::byte>> scene_block(const Scene& scene);
 Result<Job> make_render_job(const Registry& registry, const Scene& scene, const Mesh& mesh, const MapSet& maps,
                             const RenderRequest& request, std::string_view shader_target);
 
-/// The same for several meshes in place of the scene's, each in a picture of its own: command and read-back k are those
-/// of mesh k. They share the program and the maps.
+/// The same for several meshes in place of the scene's, and several requests, each in a picture of its own: command and
+/// read-back m · requests + k are those of mesh m with request k. They share maps, and programs where they can.
 Result<Job> make_render_job(const Registry& registry, const Scene& scene, std::span<const Mesh> meshes,
-                            const MapSet& maps, const RenderRequest& request, std::string_view shader_target);
+                            const MapSet& maps, std::span<const RenderRequest> requests,
+                            std::string_view shader_target);
 
-/// Bakes what is missing in `maps`, makes the job and runs it. With several meshes: a result for each, of one Job (but
-/// the oracle's, whose hits are those of a mesh, of one each).
+/// Bakes what is missing in `maps`, makes the job and runs it. With several meshes and requests: a result for each, in
+/// the same order, of one Job (but the oracle's pictures, whose hits are those of a mesh in a stage, of one each).
 Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
                             MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages = nullptr);
 
 Result<std::vector<RenderResult>> render(Backend& backend, const Registry& registry, const Scene& scene,
-                                         std::span<const Mesh> meshes, MapSet& maps, const RenderRequest& request,
+                                         std::span<const Mesh> meshes, MapSet& maps,
+                                         std::span<const RenderRequest> requests,
                                          std::vector<std::string>* messages = nullptr);
 
 }  // namespace relievo

@@ -37,35 +37,46 @@ Result<PreparedProgram> prepare(const Registry& registry, Permutation permutatio
 std::map<std::string, double> values_on(const Registry& registry, const BackendInfo& backend,
                                         std::map<std::string, double> values);
 
-/// A Job that traces all rays with each request in turn, `repeats` times over, interleaved.
+/// How often a Job traces.
+struct TraceRounds {
+  int timed = 1;         ///< rounds over all sets of rays and all requests
+  bool warm_up = false;  ///< before them each request over the first set, not timed: drivers compile what they run first
+};
+
+/// A Job that traces all rays with each request in turn, round after round.
 /// Rays keep their order; whole tiles of u and v are split off first, so that uv may be far from 0.
 /// `maps` holds every map that the techniques require. Errors: as of compose and compile; "trace.no-rays".
 Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const Ray> rays,
-                           std::span<const TraceRequest> requests, std::string_view shader_target, int repeats = 1);
+                           std::span<const TraceRequest> requests, std::string_view shader_target, TraceRounds rounds = {});
 
 /// The same for several sets of rays: requests that differ in uniform values alone share a program, and all sets do.
-/// Command (repeat · sets + s) · requests + k traces set s with request k. With `read_hits`, read-back s · requests + k
-/// holds its hits; without, nothing is read back, and the job's times are all that is wanted of it.
+/// After the warm-up, command (round · sets + s) · requests + k traces set s with request k. With `read_hits`, read-back
+/// s · requests + k holds its hits; without, nothing is read back, and the job's times are all that is wanted of it.
 Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const std::vector<Ray>> sets,
-                           std::span<const TraceRequest> requests, std::string_view shader_target, int repeats,
-                           bool read_hits);
+                           std::span<const TraceRequest> requests, std::string_view shader_target,
+                           TraceRounds rounds, bool read_hits);
+
+/// What each timed round of such a job took for each set and request: `seconds[s · requests + k]`, one value a round, by
+/// the GPU's clock; empty without timestamps.
+std::vector<std::vector<double>> trace_seconds(const JobResult& result, std::size_t sets, std::size_t requests,
+                                               TraceRounds rounds);
 
 /// The hits in one read-back of such a job; u and v in the rays' own tiles.
 std::vector<Hit> read_hits(const std::vector<std::byte>& read_back, std::span<const Ray> rays);
 
 struct TraceResult {
   std::vector<Hit> hits;        ///< one a ray; u and v in the rays' own tiles
-  std::vector<double> seconds;  ///< one a repeat, by the GPU's clock; empty without timestamps
+  std::vector<double> seconds;  ///< one a timed round, by the GPU's clock; empty without timestamps
 };
 
-/// Reads the hits of request k back from a result of make_trace_job.
-std::vector<TraceResult> read_trace(const Job& job, const JobResult& result, std::span<const Ray> rays,
-                                    std::size_t requests);
+/// What each request found, from the result of a job with one set of rays.
+std::vector<TraceResult> read_trace(const JobResult& result, std::span<const Ray> rays, std::size_t requests,
+                                    TraceRounds rounds = {});
 
 /// Bakes what is missing in `maps`, makes the job and runs it. `messages` receives validation and debug output.
 Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registry, MapSet& maps,
                                        std::span<const Ray> rays, std::span<const TraceRequest> requests,
-                                       int repeats = 1, std::vector<std::string>* messages = nullptr);
+                                       TraceRounds rounds = {}, std::vector<std::string>* messages = nullptr);
 
 /// An image of rays that look down at `angle` degrees above the base plane on a map whose lid is `scale` texture widths
 /// high, with a little perspective: `width`×`height` rays, row by row, each starting on the lid. All numbers

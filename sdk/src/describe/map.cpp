@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 4> rounding_names = {"nearest", "up", "do
 constexpr std::array<std::string_view, 2> texel_names = {"unorm", "uint"};
 constexpr std::array<std::string_view, 10> image_formats = {"r8",     "rg8",  "rgba8", "r16",     "rg16",
                                                             "rgba16", "r32f", "rg32f", "rgba32f", "rgba16ui"};
-constexpr int max_layers = 256, max_passes = 256;
+constexpr int max_layers = 256, max_layers_at_once = 16, max_passes = 256;
 constexpr std::size_t max_phases = 16;
 
 bool is_glsl_identifier(std::string_view name) {
@@ -99,8 +99,8 @@ void read_passes(TomlReader& reader, MapDescriptor& map) {
 
 void read_map(TomlReader& reader, MapDescriptor& map) {
   reader.allow_keys({"schema", "name",       "title",  "source",           "summary", "inputs",       "channels",
-                     "levels", "dimension",  "layers", "layers_parameter", "passes",  "layers_apart", "rounding",
-                     "texels", "sampler",    "image",  "binding",          "module",  "access",       "features",
+                     "levels", "dimension",  "layers", "layers_parameter", "passes",  "layers_apart", "layers_at_once",
+                     "rounding", "texels", "sampler",    "image",  "binding",          "module",  "access",       "features",
                      "loops",  "parameters", "axes"});
   map.inputs = reader.names("inputs");
   map.channels = reader.integer("channels", 1, 4);
@@ -109,6 +109,7 @@ void read_map(TomlReader& reader, MapDescriptor& map) {
   read_rounding(reader, map);
   read_passes(reader, map);
   map.layers_apart = reader.choices("layers_apart", {"repeat", "mirror", "clamp", "clip"}, "describe.range");
+  if (reader.has("layers_at_once")) map.layers_at_once = reader.integer("layers_at_once", 1, max_layers_at_once);
   map.is_uint = reader.choice("texels", texel_names, 0) == 1;
   map.sampler = read_sampler(reader);
   if (reader.has("image")) map.image = image_formats[reader.choice("image", image_formats, 0)];

@@ -29,6 +29,28 @@ Result<PreparedProgram> prepare_composed(ComposedProgram composed, std::string_v
 
 namespace {
 
+std::string identity(const ComposedProgram& composed) {
+  std::string text;
+  for (const ComposedShader& shader : composed.shaders) text += shader.text;
+  for (const ParameterSlot& slot : composed.parameters) {
+    if (slot.binding == BindingTime::specialization) text += fmt::format("/{}={}", slot.constant_id, slot.value);
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<int> SharedPrograms::index_of(const ComposedProgram& composed, std::string_view shader_target, Job& job) {
+  auto [known, is_new] = indices_.try_emplace(identity(composed), static_cast<int>(job.programs.size()));
+  if (!is_new) return known->second;
+  Result<PreparedProgram> prepared = prepare_composed(composed, shader_target);
+  if (!prepared) return tl::unexpected(prepared.error());
+  job.programs.push_back(std::move(prepared->program));
+  return known->second;
+}
+
+namespace {
+
 /// The maps that axes need, whatever their values.
 void add_maps_of_axes(const std::vector<Parameter>& parameters, std::vector<std::string>& maps) {
   for (const Parameter& axis : parameters) {

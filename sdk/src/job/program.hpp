@@ -1,6 +1,8 @@
 /// What the makers of Jobs share: programs, and binding buffers and maps to a command.
 #pragma once
 
+#include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,6 +16,17 @@ Result<ComposedProgram> compose_known(const Registry& registry, Permutation perm
 
 /// Compiles a composed program for what a backend consumes.
 Result<PreparedProgram> prepare_composed(ComposedProgram composed, std::string_view shader_target);
+
+/// The programs of a job. Permutations that differ in uniform values alone share one: it is compiled once, by us and by
+/// the driver.
+class SharedPrograms {
+ public:
+  /// The program's index in the job, which it is added to if it is new.
+  Result<int> index_of(const ComposedProgram& composed, std::string_view shader_target, Job& job);
+
+ private:
+  std::map<std::string, int> indices_;
+};
 
 Buffer make_buffer(std::string name, const void* data, std::size_t size);
 

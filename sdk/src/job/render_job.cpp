@@ -5,10 +5,11 @@
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
+#include <map>
 
+#include "describe/origins.hpp"
 #include "job/camera.hpp"
 #include "job/mesh_buffers.hpp"
-#include "job/oracle_picture.hpp"
 #include "job/program.hpp"
 #include "job/vectors.hpp"
 #include "relievo/render.hpp"
@@ -72,17 +73,60 @@ int add_target(Job& job, const char* name, Format format, const SceneImage& size
   return static_cast<int>(job.textures.size()) - 1;
 }
 
-Draw make_draw(const StageDescriptor& stage, const MeshBuffers& mesh, Job& job) {
+/// What a request brings to each of its draws.
+struct DrawPlan {
+  const RenderRequest* request = nullptr;
+  const StageDescriptor* stage = nullptr;
+  ComposedProgram composed;
+  int program = 0;
+  std::vector<ResourceBinding> resources;
+};
+
+/// A mesh's buffers in a job: requests that want it tessellated alike share them.
+class JobMesh {
+ public:
+  struct Indices {
+    int vertex_buffer = 0, index_buffer = 0;
+    std::uint32_t count = 0;  ///< of indices
+  };
+
+  JobMesh(const Mesh& mesh, const Scene& scene, Job& job) : mesh_(mesh), scene_(scene), job_(job) {}
+
+  Indices tessellated(const DrawPlan& plan) {
+    const int factor =
+        plan.stage->mesh == "tessellated" ? tessellation_of(plan.composed, scene_, mesh_.triangles.size()) : 1;
+    auto [known, is_new] = made_.try_emplace(factor);
+    if (!is_new) return known->second;
+    const MeshBuffers buffers = make_mesh_buffers(mesh_, scene_.displacement.units, factor);
+    known->second = {add_buffer(job_, "vertices", buffers.vertices), add_buffer(job_, "indices", buffers.indices),
+                     static_cast<std::uint32_t>(buffers.indices.size())};
+    return known->second;
+  }
+
+ private:
+  const Mesh& mesh_;
+  const Scene& scene_;
+  Job& job_;
+  std::map<int, Indices> made_;  ///< by the factor of tessellation
+};
+
+void add_draw(const DrawPlan& plan, const JobMesh::Indices& mesh, int depth, const SceneImage& size, Job& job) {
+  const bool is_color = plan.request->aov == Aov::color;
   Draw draw;
-  draw.vertex_buffer = add_buffer(job, "vertices", mesh.vertices);
-  draw.index_buffer = add_buffer(job, "indices", mesh.indices);
+  draw.program = plan.program;
+  draw.resources = plan.resources;
+  draw.vertex_buffer = mesh.vertex_buffer;
+  draw.index_buffer = mesh.index_buffer;
   draw.vertex_stride = sizeof(MeshVertex);
-  draw.attributes = mesh_attributes(stage.mesh == "prisms");
-  draw.count = static_cast<std::uint32_t>(mesh.indices.size());
-  draw.instances = stage.mesh == "prisms" ? 3 : 1;  // one instance a tetrahedron
+  draw.attributes = mesh_attributes(plan.stage->mesh == "prisms");
+  draw.count = mesh.count;
+  draw.instances = plan.stage->mesh == "prisms" ? 3 : 1;  // one instance a tetrahedron
   draw.clear_color = std::array<float, 4>{0, 0, 0, 0};
   draw.clear_depth = 1.0f;
-  return draw;
+  draw.color_targets = {add_target(job, "color", is_color ? Format::rgba8_unorm : Format::rgba32_float, size)};
+  draw.depth_target = depth;
+  job.read_backs.push_back({ReadBack::Source::texture, draw.color_targets.front(), 0});
+  job.commands.emplace_back(std::move(draw));
 }
 
 Status check_map(const MapSet& maps, const std::string& map, const RenderRequest& request) {
@@ -91,6 +135,29 @@ Status check_map(const MapSet& maps, const std::string& map, const RenderRequest
               fmt::format("technique '{}' in stage '{}' reads the map '{}', which the set of maps lacks; expected it "
                           "baked (bake_map)",
                           request.technique, request.stage, map));
+}
+
+Result<DrawPlan> plan_draw(const Registry& registry, const MapSet& maps, const RenderRequest& request) {
+  Result<const StageDescriptor*> stage = registry.stage(request.stage);
+  if (!stage) return tl::unexpected(stage.error());
+  if ((*stage)->mesh == "none") {
+    return fail(ErrorCode::usage, "render.stage",
+                "stage '" + request.stage + "' draws nothing; expected one that has a mesh, such as 'surface'");
+  }
+  if (Status status = check_map(maps, "height", request); !status) return tl::unexpected(status.error());
+  Permutation permutation;
+  permutation.stage = request.stage;
+  permutation.filter = request.filter;
+  permutation.address = maps.at("height").address;
+  permutation.aov = request.aov;
+  permutation.values = request.values;
+  for (const std::string& role : (*stage)->roles) permutation.roles[role] = request.technique;
+  Result<ComposedProgram> composed = compose_known(registry, std::move(permutation));
+  if (!composed) return tl::unexpected(name_file_on_disk(composed.error(), registry));
+  for (const MapSlot& slot : composed->maps) {
+    if (Status status = check_map(maps, slot.map, request); !status) return tl::unexpected(status.error());
+  }
+  return DrawPlan{&request, *stage, *std::move(composed), 0, {}};
 }
 
 }  // namespace
@@ -108,172 +175,41 @@ Result<std::vector<std::byte>> scene_block(const Scene& scene) {
 }
 
 Result<Job> make_render_job(const Registry& registry, const Scene& scene, std::span<const Mesh> meshes,
-                            const MapSet& maps, const RenderRequest& request, std::string_view shader_target) {
-  Result<const StageDescriptor*> stage = registry.stage(request.stage);
-  if (!stage) return tl::unexpected(stage.error());
-  if ((*stage)->mesh == "none") {
-    return fail(ErrorCode::usage, "render.stage",
-                "stage '" + request.stage + "' draws nothing; expected one that has a mesh, such as 'surface'");
-  }
-  if (Status status = check_map(maps, "height", request); !status) return tl::unexpected(status.error());
-  Permutation permutation;
-  permutation.stage = request.stage;
-  permutation.filter = request.filter;
-  permutation.address = maps.at("height").address;
-  permutation.aov = request.aov;
-  permutation.values = request.values;
-  for (const std::string& role : (*stage)->roles) permutation.roles[role] = request.technique;
-  Result<PreparedProgram> prepared = prepare(registry, std::move(permutation), shader_target);
-  if (!prepared) return tl::unexpected(prepared.error());
-  for (const MapSlot& slot : prepared->composed.maps) {
-    if (Status status = check_map(maps, slot.map, request); !status) return tl::unexpected(status.error());
-  }
-
+                            const MapSet& maps, std::span<const RenderRequest> requests,
+                            std::string_view shader_target) {
   Job job;
-  job.name = "render " + prepared->composed.key;
-  std::vector<ResourceBinding> resources;
-  if (Status status = bind_maps(prepared->composed, maps, job, resources); !status)
-    return tl::unexpected(status.error());
-  bind_parameters(prepared->composed, job, resources);
+  job.name = "render";
+  std::vector<DrawPlan> plans;
+  SharedPrograms programs;
   Result<std::vector<std::byte>> block = scene_block(scene);
   if (!block) return tl::unexpected(block.error());
-  bind_buffer(0, scene_binding, make_buffer("Scene", block->data(), block->size()), job, resources);
-  keep_contract(prepared->program, resources);
-  for (const Mesh& mesh : meshes) {
-    int tessellation =
-        (*stage)->mesh == "tessellated" ? tessellation_of(prepared->composed, scene, mesh.triangles.size()) : 1;
-    Draw draw = make_draw(**stage, make_mesh_buffers(mesh, scene.displacement.units, tessellation), job);
-    draw.resources = resources;
-    int color =
-        add_target(job, "color", request.aov == Aov::color ? Format::rgba8_unorm : Format::rgba32_float, scene.image);
-    draw.color_targets = {color};
-    draw.depth_target = add_target(job, "depth", Format::d32_float, scene.image);
-    job.commands.emplace_back(std::move(draw));
-    job.read_backs.push_back({ReadBack::Source::texture, color, 0});
+  for (const RenderRequest& request : requests) {
+    Result<DrawPlan> plan = plan_draw(registry, maps, request);
+    if (!plan) return tl::unexpected(plan.error());
+    Result<int> program = programs.index_of(plan->composed, shader_target, job);
+    if (!program) return tl::unexpected(name_file_on_disk(program.error(), registry));
+    plan->program = *program;
+    if (Status status = bind_maps(plan->composed, maps, job, plan->resources); !status)
+      return tl::unexpected(status.error());
+    bind_parameters(plan->composed, job, plan->resources);
+    bind_buffer(0, scene_binding, make_buffer("Scene", block->data(), block->size()), job, plan->resources);
+    keep_contract(job.programs[static_cast<std::size_t>(plan->program)], plan->resources);
+    plans.push_back(*std::move(plan));
   }
-  job.programs.push_back(std::move(prepared->program));
+  if (plans.empty() || meshes.empty()) return job;
+  job.name += " " + plans.front().composed.key;
+  if (plans.size() > 1) job.name += fmt::format(" and {} more", plans.size() - 1);
+  const int depth = add_target(job, "depth", Format::d32_float, scene.image);  // which every draw clears
+  for (const Mesh& mesh : meshes) {
+    JobMesh buffers(mesh, scene, job);
+    for (const DrawPlan& plan : plans) add_draw(plan, buffers.tessellated(plan), depth, scene.image, job);
+  }
   return job;
 }
 
 Result<Job> make_render_job(const Registry& registry, const Scene& scene, const Mesh& mesh, const MapSet& maps,
                             const RenderRequest& request, std::string_view shader_target) {
-  return make_render_job(registry, scene, std::span<const Mesh>(&mesh, 1), maps, request, shader_target);
-}
-
-namespace {
-
-Image to_image(const std::vector<std::byte>& bytes, const SceneImage& size, Aov aov) {
-  Image image{size.width, size.height, 4, {}};
-  std::size_t count = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height) * 4;
-  image.pixels.resize(count);
-  if (aov != Aov::color) {
-    std::memcpy(image.pixels.data(), bytes.data(), count * sizeof(float));
-    return image;
-  }
-  for (std::size_t i = 0; i < count; ++i)
-    image.pixels[i] = static_cast<float>(static_cast<std::uint8_t>(bytes[i])) / 255.0f;
-  return image;
-}
-
-RenderResult result_of(const Mesh& mesh, const std::vector<std::byte>& pixels, const SceneImage& size, Aov aov) {
-  RenderResult rendered;
-  rendered.image = to_image(pixels, size, aov);
-  if (aov == Aov::color) {
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(pixels.data());
-    rendered.color.assign(bytes, bytes + pixels.size());
-  }
-  for (const TriangleFrame& frame : triangle_frames(mesh)) rendered.degenerate_triangles += frame.degenerate;
-  return rendered;
-}
-
-Result<std::vector<RenderResult>> render_meshes(Backend& backend, const Registry& registry, const Scene& scene,
-                                                std::span<const Mesh> meshes, MapSet& maps,
-                                                const RenderRequest& request, std::vector<std::string>* messages) {
-  Result<std::vector<std::string>> needed = required_maps(registry, request.stage, request.technique);
-  if (!needed) return tl::unexpected(needed.error());
-  for (const std::string& map : *needed) {
-    if (Status status = bake_map(backend, registry, map, maps, request.values, messages); !status)
-      return tl::unexpected(status.error());
-  }
-  RenderRequest suited = request;
-  suited.values = values_on(registry, backend.info(), std::move(suited.values));
-  Result<Job> job = make_render_job(registry, scene, meshes, maps, suited, backend.info().shader_target);
-  if (!job) return tl::unexpected(job.error());
-  Result<JobResult> result = backend.execute(*job);
-  if (!result) return tl::unexpected(result.error());
-  append_messages(*result, messages);
-  std::vector<RenderResult> rendered;
-  for (std::size_t k = 0; k < meshes.size(); ++k) {
-    rendered.push_back(result_of(meshes[k], result->read_backs.at(k), scene.image, request.aov));
-    if (!result->command_seconds.empty()) rendered.back().seconds = result->command_seconds[k];
-  }
-  return rendered;
-}
-
-Result<RenderResult> only(Result<std::vector<RenderResult>> rendered) {
-  if (!rendered) return tl::unexpected(rendered.error());
-  return std::move(rendered->front());
-}
-
-Result<RenderResult> render_once(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
-                                 MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
-  return only(render_meshes(backend, registry, scene, {&mesh, 1}, maps, request, messages));
-}
-
-/// The rays of the pixels come from the stage itself, written as pictures.
-Result<MapData> surface_hits(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
-                             MapSet& maps, RenderRequest request, std::vector<std::string>* messages) {
-  request.technique = "bump";
-  request.aov = Aov::ray_origin;
-  Result<RenderResult> origins = render_once(backend, registry, scene, mesh, maps, request, messages);
-  if (!origins) return tl::unexpected(origins.error());
-  request.aov = Aov::ray_direction;
-  Result<RenderResult> directions = render_once(backend, registry, scene, mesh, maps, request, messages);
-  if (!directions) return tl::unexpected(directions.error());
-  return exact_surface_hits(height_map_of(maps), origins->image, directions->image);
-}
-
-/// Computes the exact hits of the pixels on the CPU, then lets the stage replay them (techniques/oracle).
-Result<RenderResult> render_oracle(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
-                                   MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
-  Result<const StageDescriptor*> stage = registry.stage(request.stage);
-  if (!stage) return tl::unexpected(stage.error());
-  Result<MapData> hits = fail(ErrorCode::unsupported, "render.oracle-stage",
-                              "the oracle has no picture of stage '" + request.stage + "', which draws the mesh '" +
-                                  (*stage)->mesh + "'; expected 'base' or 'prisms'");
-  if ((*stage)->mesh == "base") hits = surface_hits(backend, registry, scene, mesh, maps, request, messages);
-  if ((*stage)->mesh == "prisms") hits = exact_prism_hits(height_map_of(maps), scene, mesh);
-  if (!hits) return tl::unexpected(hits.error());
-  MapSet with_hits;  // of the others, what the stage itself reads: maps may be large
-  Result<std::vector<std::string>> needed = required_maps(registry, request.stage, request.technique);
-  if (!needed) return tl::unexpected(needed.error());
-  for (const std::string& map : *needed) {
-    if (const auto known = maps.find(map); known != maps.end()) with_hits.insert(*known);
-  }
-  with_hits.insert(*maps.find("height"));
-  with_hits["oracle_hits"] = std::move(*hits);
-  return render_once(backend, registry, scene, mesh, with_hits, request, messages);
-}
-
-}  // namespace
-
-Result<std::vector<RenderResult>> render(Backend& backend, const Registry& registry, const Scene& scene,
-                                         std::span<const Mesh> meshes, MapSet& maps, const RenderRequest& request,
-                                         std::vector<std::string>* messages) {
-  const bool replay = request.technique == "oracle" && !maps.contains("oracle_hits");
-  if (!replay) return render_meshes(backend, registry, scene, meshes, maps, request, messages);
-  std::vector<RenderResult> rendered;
-  for (const Mesh& mesh : meshes) {
-    Result<RenderResult> one = render_oracle(backend, registry, scene, mesh, maps, request, messages);
-    if (!one) return tl::unexpected(one.error());
-    rendered.push_back(std::move(*one));
-  }
-  return rendered;
-}
-
-Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
-                            MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages) {
-  return only(render(backend, registry, scene, std::span<const Mesh>(&mesh, 1), maps, request, messages));
+  return make_render_job(registry, scene, {&mesh, 1}, maps, {&request, 1}, shader_target);
 }
 
 }  // namespace relievo

@@ -115,32 +115,6 @@ Hit unpack(const PackedHit& packed, const Ray& ray) {
   return hit;
 }
 
-/// The programs of a job. Permutations that differ in uniform values alone share one: it is compiled once, by us and by
-/// the driver.
-class SharedPrograms {
- public:
-  Result<int> index_of(const ComposedProgram& composed, std::string_view shader_target, Job& job) {
-    auto [known, is_new] = indices_.try_emplace(identity(composed), static_cast<int>(job.programs.size()));
-    if (!is_new) return known->second;
-    Result<PreparedProgram> prepared = prepare_composed(composed, shader_target);
-    if (!prepared) return tl::unexpected(prepared.error());
-    job.programs.push_back(std::move(prepared->program));
-    return known->second;
-  }
-
- private:
-  static std::string identity(const ComposedProgram& composed) {
-    std::string text;
-    for (const ComposedShader& shader : composed.shaders) text += shader.text;
-    for (const ParameterSlot& slot : composed.parameters) {
-      if (slot.binding == BindingTime::specialization) text += fmt::format("/{}={}", slot.constant_id, slot.value);
-    }
-    return text;
-  }
-
-  std::map<std::string, int> indices_;
-};
-
 Permutation permutation_of(const TraceRequest& request, AddressMode address) {
   Permutation permutation;
   permutation.stage = "ray";
@@ -252,8 +226,8 @@ class RaySet {
 }  // namespace
 
 Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const std::vector<Ray>> sets,
-                           std::span<const TraceRequest> requests, std::string_view shader_target, int repeats,
-                           bool read_hits) {
+                           std::span<const TraceRequest> requests, std::string_view shader_target,
+                           TraceRounds rounds, bool read_hits) {
   if (Status status = check_height(maps); !status) return tl::unexpected(status.error());
   Job job;
   job.name = "trace";
@@ -282,14 +256,26 @@ Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::sp
       round.emplace_back(std::move(dispatch));
     }
   }
-  for (int i = 0; i < repeats; ++i) job.commands.insert(job.commands.end(), round.begin(), round.end());
+  if (rounds.warm_up && !round.empty())
+    job.commands.assign(round.begin(), round.begin() + static_cast<std::ptrdiff_t>(requests.size()));
+  for (int i = 0; i < rounds.timed; ++i) job.commands.insert(job.commands.end(), round.begin(), round.end());
   return job;
 }
 
 Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const Ray> rays,
-                           std::span<const TraceRequest> requests, std::string_view shader_target, int repeats) {
+                           std::span<const TraceRequest> requests, std::string_view shader_target,
+                           TraceRounds rounds) {
   const std::vector<Ray> set(rays.begin(), rays.end());
-  return make_trace_job(registry, maps, {&set, 1}, requests, shader_target, repeats, true);
+  return make_trace_job(registry, maps, {&set, 1}, requests, shader_target, rounds, true);
+}
+
+std::vector<std::vector<double>> trace_seconds(const JobResult& result, std::size_t sets, std::size_t requests,
+                                               TraceRounds rounds) {
+  const std::size_t a_round = sets * requests, first = rounds.warm_up && sets > 0 ? requests : 0;
+  std::vector<std::vector<double>> seconds(a_round);
+  for (std::size_t c = first; c < result.command_seconds.size(); ++c)
+    seconds[(c - first) % a_round].push_back(result.command_seconds[c]);
+  return seconds;
 }
 
 std::vector<Hit> read_hits(const std::vector<std::byte>& read_back, std::span<const Ray> rays) {
@@ -300,21 +286,18 @@ std::vector<Hit> read_hits(const std::vector<std::byte>& read_back, std::span<co
   return hits;
 }
 
-std::vector<TraceResult> read_trace(const Job& job, const JobResult& result, std::span<const Ray> rays,
-                                    std::size_t requests) {
-  std::vector<TraceResult> traces(requests);
-  for (std::size_t k = 0; k < requests; ++k) {
-    traces[k].hits = read_hits(result.read_backs.at(k), rays);
-    for (std::size_t c = k; c < job.commands.size() && c < result.command_seconds.size(); c += requests) {
-      traces[k].seconds.push_back(result.command_seconds[c]);
-    }
-  }
+std::vector<TraceResult> read_trace(const JobResult& result, std::span<const Ray> rays, std::size_t requests,
+                                    TraceRounds rounds) {
+  std::vector<std::vector<double>> seconds = trace_seconds(result, 1, requests, rounds);
+  std::vector<TraceResult> traces;
+  for (std::size_t k = 0; k < requests; ++k)
+    traces.push_back({read_hits(result.read_backs.at(k), rays), std::move(seconds[k])});
   return traces;
 }
 
 Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registry, MapSet& maps,
-                                       std::span<const Ray> rays, std::span<const TraceRequest> requests, int repeats,
-                                       std::vector<std::string>* messages) {
+                                       std::span<const Ray> rays, std::span<const TraceRequest> requests,
+                                       TraceRounds rounds, std::vector<std::string>* messages) {
   for (const TraceRequest& request : requests) {
     Result<std::vector<std::string>> needed = required_maps(registry, "ray", request.technique);
     if (!needed) return tl::unexpected(needed.error());
@@ -325,12 +308,12 @@ Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registr
   }
   std::vector<TraceRequest> suited(requests.begin(), requests.end());
   for (TraceRequest& request : suited) request.values = values_on(registry, backend.info(), std::move(request.values));
-  Result<Job> job = make_trace_job(registry, maps, rays, suited, backend.info().shader_target, repeats);
+  Result<Job> job = make_trace_job(registry, maps, rays, suited, backend.info().shader_target, rounds);
   if (!job) return tl::unexpected(job.error());
   Result<JobResult> result = backend.execute(*job);
   if (!result) return tl::unexpected(result.error());
   append_messages(*result, messages);
-  return read_trace(*job, *result, rays, requests.size());
+  return read_trace(*result, rays, requests.size(), rounds);
 }
 
 namespace {

@@ -20,10 +20,15 @@ struct BakeBlock {
   std::array<std::int32_t, 4> size;    // width, height, channels, level
   std::array<std::int32_t, 4> source;  // of the level below: width, height, offset; offset of this level, in texels
   std::array<std::int32_t, 4> layers;  // how many, pass, floats in a buffer, the first of the dispatch
+  std::array<std::int32_t, 4> slab;    // layers of the dispatch
 };
 
 constexpr int bake_block_binding = 1, bake_texels_binding = 2;  // and those after it
-constexpr std::uint32_t bake_group = 8;
+constexpr int bake_group = 8;
+
+std::uint32_t groups_of(int count, int of) {
+  return static_cast<std::uint32_t>((count + of - 1) / of);
+}
 
 /// The values of the map's own parameters. A technique may have the map's name, and parameters of its own.
 void add_values_of(const MapDescriptor& map, const std::map<std::string, double>& values,
@@ -51,7 +56,8 @@ BakeBlock bake_block(const MapData& output, int level, int pass, const BakePlan&
   MapLevel here = map_level(output, level), below = map_level(output, std::max(0, level - 1));
   return {{here.width, here.height, output.channels, level},
           {below.width, below.height, static_cast<std::int32_t>(below.offset), static_cast<std::int32_t>(here.offset)},
-          {output.depth, pass, static_cast<std::int32_t>(plan.buffer_floats), slab.first}};
+          {output.depth, pass, static_cast<std::int32_t>(plan.buffer_floats), slab.first},
+          {slab.count}};
 }
 
 /// The buffers that the texels are written to, which are what comes back.
@@ -109,8 +115,8 @@ Result<Job> bake_job(const PhasePrograms& programs, const MapDescriptor& descrip
     BakeBlock block = bake_block(output, k / passes, k % passes, plan, slab);
     bind_buffer(0, bake_block_binding, make_buffer("Bake", &block, sizeof(block)), job, dispatch.resources);
     keep_contract(job.programs[static_cast<std::size_t>(dispatch.program)], dispatch.resources);
-    auto groups = [](int extent) { return (static_cast<std::uint32_t>(extent) + bake_group - 1) / bake_group; };
-    dispatch.groups = {groups(block.size[0]), groups(block.size[1]), static_cast<std::uint32_t>(slab.count)};
+    dispatch.groups = {groups_of(block.size[0], bake_group), groups_of(block.size[1], bake_group),
+                       groups_of(slab.count, descriptor.layers_at_once)};
     job.commands.emplace_back(std::move(dispatch));
   }
   return job;

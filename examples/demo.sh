@@ -8,8 +8,9 @@ bash tests/setup.sh
 [ -f build/release/build.ninja ] || cmake --preset release >/dev/null
 cmake --build build/release --target relievo_cli
 
-# A quick look of one to three minutes; `--full` given here measures everything in about a quarter of an hour. Options of
-# `relievo report` given here come last and win. Height maps that are not installed are left out.
+# A quick look of one and a half minutes, of three where drivers compile the shaders first; `--full` given here measures
+# everything in about a quarter of an hour. Options of `relievo report` given here come last and win. Height maps that are
+# not installed are left out.
 irrlicht=/usr/share/doc/libirrlicht-dev/media
 build/release/bin/relievo report --quick \
   --scene examples/scenes/asteroid.toml --scene examples/scenes/jacksboro.toml \

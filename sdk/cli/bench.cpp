@@ -132,7 +132,7 @@ class Timing {
 };
 
 std::string time_text(const nlohmann::json& value, double unit) {
-  return value.is_null() ? "-" : fmt::format("{:.2f}", value.get<double>() * unit);
+  return value.is_null() ? "–" : fmt::format("{:.2f}", value.get<double>() * unit);
 }
 
 void print_table(const nlohmann::json& rows) {

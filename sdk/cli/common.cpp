@@ -253,13 +253,13 @@ double median(std::vector<double> values) {
 }
 
 std::string percent_text(double percent) {
-  if (std::isnan(percent)) return "-";
+  if (std::isnan(percent)) return "–";
   if (percent == 0) return "0";
   return percent < 0.0005 ? "<0.001" : fmt::format("{:.3f}", percent);
 }
 
 std::string error_text(double error) {
-  return std::isnan(error) ? "-" : fmt::format("{:.2e}", error);
+  return std::isnan(error) ? "–" : fmt::format("{:.2e}", error);
 }
 
 nlohmann::json to_json(const ErrorFigures& f) {
@@ -287,6 +287,7 @@ Progress::Progress(std::string label, std::size_t total)
     : label_(std::move(label)), total_(total), shown_(isatty(STDERR_FILENO) != 0) {}
 
 void Progress::advance(const std::string& what) {
+  const std::lock_guard lock(mutex_);
   ++done_;
   if (!shown_) return;
   constexpr std::size_t width = 30;

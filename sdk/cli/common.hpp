@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -104,14 +105,14 @@ Status make_folder(const std::filesystem::path& path);
 /// Of an even number the mean of the two in the middle; −1 of nothing, which stands for "not timed".
 double median(std::vector<double> values);
 
-/// "12.345"; "<0.001" for what would be rounded to nothing, "0" for nothing itself, "-" of no rays (NaN).
+/// "12.345"; "<0.001" for what would be rounded to nothing, "0" for nothing itself, "–" of no rays (NaN).
 std::string percent_text(double percent);
-/// "1.20e-03", or "-" of no values (NaN).
+/// "1.20e-03", or "–" of no values (NaN).
 std::string error_text(double error);
 
 nlohmann::json to_json(const ErrorFigures& figures);
 
-/// A progress bar on stderr when that is a terminal; nothing otherwise.
+/// A progress bar on stderr when that is a terminal; nothing otherwise. Thread-safe.
 class Progress {
  public:
   Progress(std::string label, std::size_t total);
@@ -122,6 +123,7 @@ class Progress {
   std::string label_;
   std::size_t total_, done_ = 0;
   bool shown_;
+  std::mutex mutex_;
 };
 
 // One a file.

@@ -35,7 +35,6 @@ SweepPlan plan_of(const ReportOptions& options) {
   plan.budgets = {64};
   plan.image = std::min(plan.image, quick_image);
   plan.repeats = std::min(plan.repeats, 2);
-  plan.maps_elsewhere = 1;
   return plan;
 }
 
@@ -82,16 +81,19 @@ void leave_out_maps(const ReportOptions& options, std::vector<RayCase>& maps, st
 
 /// Compiling is most of what small pictures and few rays take: a quick report compiles less.
 EvaluationInput input_to_judge(EvaluationInput input, const ReportOptions& options, std::vector<NotRun>& not_run) {
-  const std::size_t swept_maps = input.ray_cases.size();
+  const bool has_sweep = !input.ray_cases.empty();
   if (input.ray_cases.size() > 1) input.ray_cases.resize(1);
   if (!options.quick) return input;
   for (RayCase& ray_case : input.ray_cases) ray_case.angles = plan_of(options).angles;
   input.ray_image = std::min(input.ray_image, quick_image);
   input.repeats = 1;
   input.crack_seeds = 1;
-  if (input.backends.size() > 1 && swept_maps > 1)
-    not_run.push_back({"sweep of all height maps but the first on all backends but the first",
-                       "--quick sweeps them on one: errors hardly differ"});
+  if (input.backends.size() > 1 && has_sweep)
+    not_run.push_back({"sweep on all backends but the first", "--quick sweeps on one: errors hardly differ"});
+  if (!input.scenes.empty()) {
+    not_run.push_back({"prisms under more than one random vertex order", "--quick draws one"});
+    not_run.push_back({"pictures a second time, for their times and what changes", "--quick draws them once"});
+  }
   for (std::size_t i = 1; i < input.scenes.size(); ++i)
     not_run.push_back({"pictures of scene " + input.scenes[i].first, "--quick draws the first scene only"});
   if (input.scenes.size() > 1) input.scenes.resize(1);
@@ -112,10 +114,15 @@ Result<Report> measure(EvaluationInput input, const ReportOptions& options, std:
   std::size_t files = input.ray_cases.size();
   if (!options.quick && files > 0) {
     const auto is_taken = [&](const std::string& name) { return is_name_of(input.ray_cases, name); };
+    if (input.backends.size() > 1)
+      not_run.push_back({"sweep of the height maps made by rule on all backends but the first",
+                         "they are more than half of the time, and errors hardly differ"});
     for (NamedMap& map : make_synthetic_maps(synthetic_size))
       input.ray_cases.push_back({unlike_others(map.name, is_taken), std::move(map.height)});
   }
-  Result<Sweep> sweep = run_sweep(input, plan_of(options));
+  SweepPlan plan = plan_of(options);
+  if (!options.quick) plan.maps_elsewhere = files;
+  Result<Sweep> sweep = run_sweep(input, plan);
   if (!sweep) return tl::unexpected(sweep.error());
   report.sweep = std::move(*sweep);
   Result<Evaluation> evaluation = evaluate(judged);
@@ -174,8 +181,8 @@ void print_techniques(const Report& report) {
     fmt::print("{:<22} {:>9} {:>9} {:>11} {:>10} {:>8.1f} {:>8.1f} {:>9} {:>8}\n", technique,
                percent_text(e.wrong_percent()), percent_text(e.percent(e.missed)), percent_text(e.percent(e.exhausted)),
                error_text(e.uv_texels.p99), e.mean_steps, e.mean_fetches,
-               row->seconds > 0 ? fmt::format("{:.2f}", static_cast<double>(e.rays) / row->seconds / 1e6) : "-",
-               ratio > 0 ? fmt::format("{:.2f}", ratio) : "-");
+               row->seconds > 0 ? fmt::format("{:.2f}", static_cast<double>(e.rays) / row->seconds / 1e6) : "–",
+               ratio > 0 ? fmt::format("{:.2f}", ratio) : "–");
   }
 }
 
@@ -256,7 +263,9 @@ void add_report(CLI::App& app, Context& context) {
       ->check(CLI::Range(1, 2048))
       ->take_last()
       ->capture_default_str();
-  command->add_option("--repeats", options->repeats, "Timed runs, and runs that must be byte-identical")
+  command
+      ->add_option("--repeats", options->repeats,
+                   "Timed runs; pictures are drawn once more, and must be the same each time")
       ->check(CLI::Range(1, 100))
       ->take_last()
       ->capture_default_str();
@@ -266,7 +275,9 @@ void add_report(CLI::App& app, Context& context) {
                    "Folder for index.html, report.json, report.csv, pictures.csv and pictures/")
       ->required()
       ->take_last();
-  command->add_flag("--quick,!--full", options->quick, "Fewer counts, angles and rays, no height maps made by rule")
+  command
+      ->add_flag("--quick,!--full", options->quick,
+                 "Fewer counts, angles, rays and height maps, one backend swept, one scene, drawn once")
       ->take_last();
 }
 

@@ -1,6 +1,7 @@
 // Host of a map's bake module: runs relievo_bake once for every texel of the map (of every layer, if it has several; or of every
 // RELIEVO_BAKE_LAYERS_AT_ONCE layers, which one run then writes).
-// A module defines `void relievo_bake(ivec2 texel)`, reads its input maps and writes with relievo_bake_write. Each phase of its
+// A module defines `void relievo_bake(ivec2 texel)`, reads its input maps and writes with relievo_bake_write, or each of several
+// layers with relievo_bake_write_layer. Each phase of its
 // passes is a program of its own: drivers compile conditions on a uniform anew for every value that it has.
 #include "ray.glsl"
 
@@ -35,9 +36,11 @@ void relievo_bake_write_layer(ivec2 texel, int layer, int channel, float value) 
   if (relievo_bake_has_layer(layer)) relievo_map_store(relievo_bake_index(texel, layer, channel), value);
 }
 
+#if RELIEVO_BAKE_LAYERS_AT_ONCE == 1
 void relievo_bake_write(ivec2 texel, int channel, float value) {
   relievo_map_store(relievo_bake_index(texel, relievo_bake_layer(), channel), value);
 }
+#endif
 
 int relievo_bake_pass() { return relievo_bake_layers.y; }
 

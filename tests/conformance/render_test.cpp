@@ -125,6 +125,42 @@ TEST(Render, SeveralMeshesGiveThePicturesThatEachGives) {
   }
 }
 
+/// Stages, techniques and what is shown in one list: each picture is where its request is.
+TEST(Render, SeveralRequestsGiveThePicturesThatEachGives) {
+  const Scene scene = make_scene(MeshKind::torus, 64);
+  const std::vector<Mesh> meshes = {mesh_of(scene), make_plane()};
+  const std::vector<RenderRequest> requests = {
+      request_of("prism", "oracle"),   request_of("surface", "relief"),        request_of("vertex", ""),
+      request_of("surface", "oracle"), request_of("prism", "relief", Aov::uv), request_of("prism", "oracle", Aov::uv)};
+  for (const std::string& name : both_backends) {
+    MapSet maps = map_set(hills());
+    const auto together = render(backend(name), registry(), scene, meshes, maps, requests);
+    ASSERT_TRUE(together) << format(together.error());
+    ASSERT_EQ(together->size(), meshes.size() * requests.size());
+    for (std::size_t i = 0; i < together->size(); ++i) {
+      const RenderRequest& request = requests[i % requests.size()];
+      const RenderResult alone = render_on(name, scene, meshes[i / requests.size()], hills(), request);
+      EXPECT_EQ((*together)[i].image.pixels, alone.image.pixels)
+          << fmt::format("{} of {} on {}, mesh {}", request.technique, request.stage, name, i / requests.size());
+      EXPECT_GT(std::count_if(alone.image.pixels.begin(), alone.image.pixels.end(), [](float x) { return x > 0; }), 99);
+    }
+  }
+}
+
+/// Hits of the oracle are replayed only where they are the same.
+TEST(Render, OracleRequestsOfOtherValuesHaveHitsOfTheirOwn) {
+  const Scene scene = make_scene(MeshKind::plane, 64);
+  const Mesh mesh = mesh_of(scene);
+  std::vector<RenderRequest> requests(2, request_of("surface", "oracle"));
+  requests[1].values["surface.normal_source"] = 1;
+  MapSet maps = map_set(hills());
+  const auto together = render(backend("vulkan"), registry(), scene, {&mesh, 1}, maps, requests);
+  ASSERT_TRUE(together) << format(together.error());
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_EQ((*together)[k].color, render_on("vulkan", scene, mesh, hills(), requests[k]).color) << k;
+  EXPECT_NE((*together)[0].color, (*together)[1].color);
+}
+
 TEST(Render, CountCracksCatchesOnePixel) {
   const Scene scene = make_scene(MeshKind::sphere, 96);
   const Pixels good = render_on("vulkan", scene, mesh_of(scene), hills(), request_of("prism", "relief")).color;

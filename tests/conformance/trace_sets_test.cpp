@@ -87,6 +87,23 @@ TEST_P(TraceSets, EveryCommandTracesItsSetWithItsRequest) {
   }
 }
 
+TEST_P(TraceSets, AWarmUpTracesTheFirstSetOnceAndIsNotTimed) {
+  const TraceRounds rounds{2, true};
+  const auto job = make_trace_job(registry(), maps_, sets_, requests_, target(), rounds, true);
+  ASSERT_TRUE(job) << format(job.error());
+  ASSERT_EQ(job->commands.size(), 10u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    Job one = *job;
+    one.commands = {job->commands[k]};
+    const JobResult result = run(one);
+    EXPECT_TRUE(same(read_hits(result.read_backs.at(k), sets_[0]), trace_alone(0, k))) << "request " << k;
+  }
+  JobResult result;
+  EXPECT_EQ(trace_seconds(result, 2, 2, rounds), std::vector<std::vector<double>>(4)) << "without timestamps";
+  result.command_seconds = {100, 100, 1, 2, 3, 4, 5, 6, 7, 8};
+  EXPECT_EQ(trace_seconds(result, 2, 2, rounds), (std::vector<std::vector<double>>{{1, 5}, {2, 6}, {3, 7}, {4, 8}}));
+}
+
 TEST_P(TraceSets, WithoutReadHitsNothingComesBackButTimes) {
   const Job job = job_of_all(false);
   EXPECT_EQ(job.commands.size(), 8u);

@@ -79,7 +79,7 @@ TEST_F(ReportCli, AQuickReportHasEveryFileAndTheyParse) {
   const auto sweep = table("report.csv"), pictures = table("pictures.csv");
   EXPECT_EQ(sweep.size(), json["sweep"]["rows"].size());
   EXPECT_EQ(values_of(sweep, "technique"), (Names{"relief", "parallax"}));
-  EXPECT_EQ(values_of(sweep, "backend"), (Names{"vulkan", "opengl"}));
+  EXPECT_EQ(values_of(sweep, "backend"), Names{"vulkan"}) << "a quick one sweeps on one";
   const auto is_judged = [](const auto& picture) { return picture["technique"] != "oracle"; };
   EXPECT_EQ(pictures.size(), std::count_if(json["pictures"].begin(), json["pictures"].end(), is_judged));
   EXPECT_EQ(values_of(pictures, "scene"), Names{"ground"});

@@ -64,6 +64,18 @@ TEST(BakePlan, OnePassReadsNoOtherLayer) {
   EXPECT_EQ(bake.plan()->layers, 1);
 }
 
+TEST(BakePlan, LayersOfOneRunStayTogetherWhereTheyFit) {
+  Bake bake = sectors(512);  // 3 MiB a layer
+  bake.map.passes = {1};
+  bake.map.layers_at_once = 2;
+  bake.output.depth = 9;
+  bake.backend.max_storage_buffer = 128 * mib;
+  bake.height = {"height", 1024, 1024, 1, {}};
+  EXPECT_EQ(bake.plan()->layers, 4) << "of five that fit";
+  bake.backend.max_storage_buffer = 4 * mib;
+  EXPECT_EQ(bake.plan()->layers, 1);
+}
+
 TEST(BakePlan, MoreFloatsThanShadersCountAreRefused) {
   Bake bake = sectors(10000);
   bake.output.address = AddressMode::mirror;

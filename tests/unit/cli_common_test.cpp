@@ -21,8 +21,8 @@ TEST(CliPercent, RoundsNothingToNothing) {
   EXPECT_EQ(percent_text(1e-6), "<0.001");
   EXPECT_EQ(percent_text(0.0005), "0.001");
   EXPECT_EQ(percent_text(12.3456), "12.346");
-  EXPECT_EQ(percent_text(std::numeric_limits<double>::quiet_NaN()), "-");
-  EXPECT_EQ(error_text(std::numeric_limits<double>::quiet_NaN()), "-");
+  EXPECT_EQ(percent_text(std::numeric_limits<double>::quiet_NaN()), "–");
+  EXPECT_EQ(error_text(std::numeric_limits<double>::quiet_NaN()), "–");
 }
 
 TEST(CliScale, GoesToTheRaysAndToTheMapsThatAreBakedForIt) {

@@ -32,6 +32,13 @@ TEST(ParseMap, ReadsWithWhichAddressModesLayersAreApart) {
   EXPECT_EQ(map->layers_apart, (std::vector<std::string>{"clip", "repeat"}));
 }
 
+TEST(ParseMap, ReadsHowManyLayersOneRunWrites) {
+  const auto map = parse_map(with(examples::map, "channels = 3", "channels = 3\nlayers_at_once = 4"), map_path);
+  ASSERT_TRUE(map) << format(map.error());
+  EXPECT_EQ(map->layers_at_once, 4);
+  EXPECT_EQ(parse_map(examples::map, map_path)->layers_at_once, 1);
+}
+
 TEST(ParseMap, ReadsThePassesOfEveryPhase) {
   const auto with_passes = [](const std::string& passes) {
     return parse_map(with(examples::map, "channels = 3", "channels = 3\npasses = " + passes), map_path);
@@ -138,6 +145,8 @@ const Fault map_faults[] = {
     {"TextChannels", "channels = 3", "channels = \"three\"", "describe.type", 5, 12, "the string \"three\""},
     {"UnknownAddressOfLayersApart", "channels = 3", "channels = 3\nlayers_apart = [\"wrap\"]", "describe.range", 6, 17,
      "\"wrap\", which is not known"},
+    {"TooManyLayersAtOnce", "channels = 3", "channels = 3\nlayers_at_once = 17", "describe.range", 6, 18,
+     "from 1 to 16"},
     {"UnknownImageFormat", "sampler =", "image = \"rgb9\"\nsampler =", "describe.range", 6, 9, "rgb9"},
     {"ImageWithoutItsAxis", "sampler =", "image = \"rgba8\"\nsampler =", "describe.map-parameter", 1, 1,
      "an axis \"fetch\" with the value \"image\""},

@@ -136,6 +136,13 @@ TEST(Judge, FailsAPictureThatChanges) {
   EXPECT_EQ(bad.failures(), Names({"pictures that change from run to run"}));
 }
 
+TEST(Judge, SaysNothingOfChangesWhereNothingIsDrawnTwice) {
+  Case once;
+  once.input.repeats = 1;
+  EXPECT_EQ(once.failures(), Names());
+  for (const Check& check : once.evaluation.checks) EXPECT_NE(check.name, "pictures that change from run to run");
+}
+
 TEST(Judge, FailsOneRayWithANumberThatIsNone) {
   Case bad;
   bad.evaluation.rays[0].error.non_finite = 1;

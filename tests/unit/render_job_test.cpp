@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 
 namespace relievo {
 namespace {
@@ -92,6 +93,40 @@ TEST(RenderJob, AMissingMapIsNamed) {
   const auto no_height = make_render_job(*registry, Scene{}, make_plane(), MapSet{}, request_of("relief"), "spirv");
   ASSERT_FALSE(no_height);
   EXPECT_EQ(no_height.error().id, "render.missing-map");
+}
+
+TEST(RenderJob, RequestsShareProgramsMapsMeshesAndDepth) {
+  const auto registry = load_registry();
+  MapSet maps = flat_maps();
+  add_normal_map(maps);
+  std::vector<RenderRequest> requests(3, request_of("relief"));
+  requests[1].aov = Aov::uv;
+  requests[2].values["surface.normal_source"] = 1;  // an axis: another program
+  const std::vector<Mesh> meshes(2, make_plane());
+  const auto job = make_render_job(*registry, Scene{}, meshes, maps, requests, "spirv");
+  ASSERT_TRUE(job) << format(job.error());
+  EXPECT_EQ(job->programs.size(), 3U);
+  EXPECT_EQ(job->commands.size(), 6U);
+  EXPECT_EQ(job->read_backs.size(), 6U);
+  EXPECT_EQ(job->textures.size(), 2U + 1 + 6) << "height, normal, depth and what is drawn";
+  std::set<int> vertices;
+  for (const Command& command : job->commands) vertices.insert(std::get<Draw>(command).vertex_buffer);
+  EXPECT_EQ(vertices.size(), 2U);
+  const auto alone = make_render_job(*registry, Scene{}, make_plane(), maps, requests[0], "spirv");
+  ASSERT_TRUE(alone);
+  EXPECT_EQ(job->name, alone->name + " and 2 more");
+  const auto twice = make_render_job(*registry, Scene{}, meshes, maps, std::vector(2, requests[0]), "spirv");
+  ASSERT_TRUE(twice);
+  EXPECT_EQ(twice->programs.size(), 1U);
+}
+
+TEST(RenderJob, NoRequestsAreAJobThatDoesNothing) {
+  const auto registry = load_registry();
+  const auto job =
+      make_render_job(*registry, Scene{}, std::vector<Mesh>(1), flat_maps(), std::span<const RenderRequest>{}, "spirv");
+  ASSERT_TRUE(job) << format(job.error());
+  EXPECT_TRUE(job->commands.empty());
+  EXPECT_TRUE(validate_job(*job));
 }
 
 TEST(RenderJob, AMapThatAnAxisRulesOutIsNotAskedFor) {

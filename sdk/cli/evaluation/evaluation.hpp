@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -64,8 +65,9 @@ struct EvaluationInput {
   std::vector<std::pair<std::string, LoadedScene>> scenes;  ///< name and parts
   std::map<std::string, double> values;                     ///< "owner.parameter"
   int ray_image = 1024;                                     ///< rays a case: ray_image²
-  int repeats = 3;                                          ///< timed rounds, and runs that must be byte-identical
-  std::uint64_t crack_seeds = 3;                            ///< random vertex orders that prisms are drawn in
+  int repeats = 3;  ///< timed rounds; pictures are drawn once more, and again this often if it is more than 1
+  std::uint64_t crack_seeds = 3;                      ///< random vertex orders that prisms are drawn in
+  std::size_t pixels_at_once = std::size_t{1} << 22;  ///< of one Job's pictures: bounds what they take in memory
   bool time = true;
   std::filesystem::path pictures;  ///< folder for PNGs; empty = none are written
   std::shared_ptr<BakedMaps> baked = std::make_shared<BakedMaps>();
@@ -146,6 +148,11 @@ struct Evaluation {
   std::vector<Check> checks;
   std::vector<NotRun> not_run;
 };
+
+template <class Row>
+void move_to(std::vector<Row>& all, std::vector<Row>& some) {
+  all.insert(all.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
+}
 
 /// Whether a name in a row is that of one of its backends, and not the oracle's or a stage's.
 bool is_backend(const Evaluation& evaluation, std::string_view name);

@@ -8,10 +8,6 @@ namespace relievo::cli {
 
 namespace {
 
-bool is_finite(const Hit& hit) {
-  return std::isfinite(hit.t) && std::isfinite(hit.u) && std::isfinite(hit.v) && std::isfinite(hit.h);
-}
-
 std::string describe(const Ray& r, const Hit& h) {
   return fmt::format(
       "ray {:.17g},{:.17g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}: status {} at t {:.9g}, ({:.9g}, {:.9g}, "

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
+#include <list>
 
+#include "evaluation/at_once.hpp"
 #include "evaluation/evaluation.hpp"
 #include "relievo/trace.hpp"
 
@@ -33,8 +34,11 @@ struct RayRun {
 
 /// What a backend answers to a run, by RayRun::index.
 struct Answers {
-  std::vector<std::vector<Hit>> hits;
-  std::vector<double> seconds;  ///< medians; empty: not timed
+  Backend& backend;
+  MapSet& maps;
+  std::vector<std::vector<Hit>> hits = {};
+  std::vector<double> seconds = {};  ///< medians, −1 without timestamps; empty: not timed
+  std::vector<std::string> messages = {};
 };
 
 std::vector<TraceRequest> requests_of(const RayRun& run, const BackendInfo& backend, bool count) {
@@ -65,52 +69,63 @@ RayAgreement agree(const std::vector<Hit>& truth, const std::vector<Hit>& a, con
     ++agreement.judged;
     equal += are_equal(a[i], b[i]);
   }
-  agreement.equal_percent = agreement.judged
-                                ? 100.0 * static_cast<double>(equal) / static_cast<double>(agreement.judged)
-                                : std::numeric_limits<double>::quiet_NaN();
+  agreement.equal_percent = percent_of(equal, agreement.judged);
   return agreement;
 }
 
-Status bake_maps(const RayRun& run, Backend& backend, MapSet& maps, std::vector<std::string>& messages) {
+Status bake_maps(const RayRun& run, Answers& answers) {
   for (const std::string& technique : run.input.techniques) {
-    Result<std::vector<std::string>> needed = required_maps(*run.input.registry, "ray", technique);
-    if (!needed) return tl::unexpected(needed.error());
-    for (const std::string& map : *needed) {
-      if (Status status = bake_map(backend, *run.input.registry, map, maps, run.values, &messages); !status)
-        return status;
-    }
+    Status status = bake_required_maps(answers.backend, *run.input.registry, "ray", technique, answers.maps, run.values,
+                                       &answers.messages);
+    if (!status) return status;
   }
   return {};
 }
 
 /// To count what happens, in one round; or to time it.
-Result<JobResult> execute(const RayRun& run, Backend& backend, const MapSet& maps, TraceRounds rounds, bool count,
-                          std::vector<std::string>& messages) {
-  Result<Job> job = make_trace_job(*run.input.registry, maps, run.rays, requests_of(run, backend.info(), count),
-                                   backend.info().shader_target, rounds, count);
+Result<JobResult> execute(const RayRun& run, Answers& answers, TraceRounds rounds, bool count) {
+  const BackendInfo& backend = answers.backend.info();
+  Result<Job> job = make_trace_job(*run.input.registry, answers.maps, run.rays, requests_of(run, backend, count),
+                                   backend.shader_target, rounds, count);
   if (!job) return tl::unexpected(job.error());
-  Result<JobResult> result = backend.execute(*job);
-  if (result) messages.insert(messages.end(), result->messages.begin(), result->messages.end());
+  Result<JobResult> result = answers.backend.execute(*job);
+  if (result) move_to(answers.messages, result->messages);
   return result;
 }
 
-Result<Answers> ask(const RayRun& run, Backend& backend, std::vector<std::string>& messages) {
-  MapSet& maps = run.input.baked->of(*run.input.registry, run.ray_case.height, backend.info().name, run.values);
-  if (Status status = bake_maps(run, backend, maps, messages); !status) return tl::unexpected(status.error());
-  Result<JobResult> counted = execute(run, backend, maps, {}, true, messages);
+Status count(const RayRun& run, Answers& answers) {
+  Result<JobResult> counted = execute(run, answers, {}, true);
   if (!counted) return tl::unexpected(counted.error());
-  Answers answers;
   for (std::size_t i = 0; i < counted->read_backs.size(); ++i) {
     answers.hits.push_back(read_hits(counted->read_backs[i], run.rays[i / run.requests()]));
     counted->read_backs[i] = {};
   }
-  if (!run.input.time) return answers;
+  return {};
+}
+
+Status time(const RayRun& run, Answers& answers) {
   const TraceRounds rounds{run.input.repeats, true};
-  Result<JobResult> timed = execute(run, backend, maps, rounds, false, messages);
+  Result<JobResult> timed = execute(run, answers, rounds, false);
   if (!timed) return tl::unexpected(timed.error());
   for (const std::vector<double>& seconds : trace_seconds(*timed, run.rays.size(), run.requests(), rounds))
     answers.seconds.push_back(median(seconds));
-  return answers;
+  return {};
+}
+
+/// All backends at once; what is timed, one after another. Maps are there before the backends share them.
+Status ask(const RayRun& run, std::list<Answers>& answers, Progress& progress) {
+  for (Answers& one : answers) {
+    if (Status status = bake_maps(run, one); !status) return status;
+  }
+  Status asked = for_each_at_once(answers, [&](Answers& one) {
+    for (std::size_t i = 0; i < run.angles.size() * run.filters.size(); ++i)
+      progress.advance(fmt::format("rays {} {}° {}", run.ray_case.name, run.angles.front(), one.backend.info().name));
+    return count(run, one);
+  });
+  for (Answers& one : answers) {
+    if (asked && run.input.time) asked = time(run, one);
+  }
+  return asked;
 }
 
 void add_rows(const RayRun& run, std::size_t angle, std::size_t filter, const std::string& backend,
@@ -143,18 +158,17 @@ void add_agreements(const RayRun& run, std::size_t angle, std::size_t filter, co
 }
 
 Status run_case(const RayRun& run, OpenBackends& backends, Evaluation& evaluation, Progress& progress) {
-  std::vector<std::pair<std::string, Answers>> answers;
+  std::list<Answers> answers;
   for (auto& [name, backend] : backends) {
-    for (std::size_t i = 0; i < run.angles.size() * run.filters.size(); ++i)
-      progress.advance(fmt::format("rays {} {}° {}", run.ray_case.name, run.angles.front(), name));
-    Result<Answers> answer = ask(run, *backend, evaluation.messages);
-    if (!answer) return tl::unexpected(answer.error());
-    answers.emplace_back(backend->info().name, std::move(*answer));
+    MapSet& maps = run.input.baked->of(*run.input.registry, run.ray_case.height, backend->info().name, run.values);
+    answers.push_back({*backend, maps});
   }
+  if (Status status = ask(run, answers, progress); !status) return status;
+  for (Answers& one : answers) move_to(evaluation.messages, one.messages);
   for (std::size_t a = 0; a < run.angles.size(); ++a) {
     for (std::size_t f = 0; f < run.filters.size(); ++f) {
-      for (const auto& [name, answer] : answers) add_rows(run, a, f, name, answer, evaluation);
-      if (answers.size() > 1) add_agreements(run, a, f, answers[0].second, answers[1].second, evaluation);
+      for (const Answers& one : answers) add_rows(run, a, f, one.backend.info().name, one, evaluation);
+      if (answers.size() > 1) add_agreements(run, a, f, answers.front(), *std::next(answers.begin()), evaluation);
     }
   }
   return {};

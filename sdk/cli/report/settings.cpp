@@ -11,7 +11,7 @@ namespace relievo::cli {
 namespace {
 
 /// A default beyond this is no search but a bound on one.
-constexpr double largest_search = 4096;
+constexpr double largest_search = 256;
 
 std::set<int> counts_of(const Parameter& loop, double standard, const SweepPlan& plan) {
   std::set<int> counts;

@@ -204,11 +204,13 @@ MapRun make_run(const EvaluationInput& input, const SweepPlan& plan, const RayCa
 
 /// Every backend over the maps; the maps that techniques read are baked once, by the first backend.
 Status sweep_backends(const EvaluationInput& input, const std::vector<Setting>& settings, Sweep& sweep) {
-  Progress progress("sweep", (sweep.maps.size() + 1) * input.backends.size());
+  const std::size_t elsewhere = std::min(sweep.plan.maps_elsewhere, sweep.maps.size());
+  Progress progress("sweep", sweep.maps.size() + 1 + elsewhere * (input.backends.size() - 1));
   std::vector<MapRun> runs;
   for (const RayCase& ray_case : input.ray_cases) runs.push_back(make_run(input, sweep.plan, ray_case, settings));
   input.clock->end("oracle's rays");
   for (const std::string& name : input.backends) {
+    if (elsewhere == 0 && !sweep.backends.empty()) break;
     Result<std::unique_ptr<Backend>> backend = open(name, false);
     if (!backend && backend.error().code == ErrorCode::unsupported) {
       sweep.not_run.push_back({"sweep on " + name, backend.error().message});
@@ -216,8 +218,7 @@ Status sweep_backends(const EvaluationInput& input, const std::vector<Setting>& 
     }
     if (!backend) return tl::unexpected(backend.error());
     sweep.backends.push_back(name);
-    const std::size_t maps = sweep.backends.size() > 1 ? std::min(runs.size(), sweep.plan.maps_elsewhere) : runs.size();
-    for (MapRun& run : std::span(runs).first(maps)) {
+    for (MapRun& run : std::span(runs).first(sweep.backends.size() > 1 ? elsewhere : runs.size())) {
       progress.advance(fmt::format("{} on {}", run.ray_case.name, name));
       if (!run.baked) {
         if (Status status = bake_all(**backend, run, sweep.costs); !status) return status;

@@ -2,7 +2,6 @@
 /// both filters, on every backend.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -61,7 +60,7 @@ struct SweepPlan {
   std::vector<int> budgets = {16, 64, 256};            ///< of a loop that is only a bound
   int image = 128;                                     ///< rays: image²
   int repeats = 3;
-  std::size_t maps_elsewhere = std::numeric_limits<std::size_t>::max();  ///< how many backends after the first sweep
+  std::size_t maps_elsewhere = 0;  ///< of the maps, how many backends after the first sweep
 };
 
 struct Sweep {

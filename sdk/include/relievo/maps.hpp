@@ -73,6 +73,11 @@ Result<std::vector<std::string>> required_maps(const Registry& registry, std::st
 Status bake_map(Backend& backend, const Registry& registry, std::string_view map, MapSet& maps,
                 const std::map<std::string, double>& values = {}, std::vector<std::string>* messages = nullptr);
 
+/// The same for every map that a stage and a technique read (required_maps). Where all are there, `maps` is only read.
+Status bake_required_maps(Backend& backend, const Registry& registry, std::string_view stage,
+                          std::string_view technique, MapSet& maps, const std::map<std::string, double>& values = {},
+                          std::vector<std::string>* messages = nullptr);
+
 /// A map as its file has it.
 struct MapFile {
   MapData map;

@@ -12,6 +12,15 @@
 
 namespace relievo {
 
+/// NaN where there is no whole.
+inline double percent_of(std::uint64_t part, std::uint64_t whole) {
+  return whole ? 100.0 * static_cast<double>(part) / static_cast<double>(whole)
+               : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Whether all of its numbers are.
+bool is_finite(const Hit& hit);
+
 /// Nearest-rank quantiles over hits that are neither missed, false nor wrong-layer; NaN where there are none.
 struct ErrorQuantiles {
   double p50 = std::numeric_limits<double>::quiet_NaN(), p99 = p50, max = p50;
@@ -25,17 +34,13 @@ struct ErrorFigures {
   std::uint64_t false_hit = 0;    ///< technique hits, oracle does not
   std::uint64_t wrong_layer = 0;  ///< both hit, more than 1 texel in uv or 0.02 in H apart
   std::uint64_t exhausted = 0;    ///< technique ran out of steps
-  std::uint64_t non_finite =
-      0;  ///< of all rays: NaN in the technique's answer (Hit::sanitized), NaN or Inf in what comes out
-  ErrorQuantiles uv_texels;  ///< |Δuv| in texels (max norm over the axes)
-  ErrorQuantiles height;     ///< |ΔH|
+  std::uint64_t non_finite = 0;   ///< of all rays: NaN in the answer (Hit::sanitized), NaN or Inf in what comes out
+  ErrorQuantiles uv_texels;       ///< |Δuv| in texels (max norm over the axes)
+  ErrorQuantiles height;          ///< |ΔH|
   double mean_steps = 0, mean_fetches = 0;
 
   /// Of the judged rays; NaN where there are none.
-  double percent(std::uint64_t count) const {
-    return judged ? 100.0 * static_cast<double>(count) / static_cast<double>(judged)
-                  : std::numeric_limits<double>::quiet_NaN();
-  }
+  double percent(std::uint64_t count) const { return percent_of(count, judged); }
   /// missed + false + wrong-layer, percent of judged rays.
   double wrong_percent() const { return percent(missed + false_hit + wrong_layer); }
 };
@@ -76,10 +81,7 @@ struct PixelOffsets {
   ErrorQuantiles pixels;     ///< distance over the others
 
   /// NaN where no pixel is judged.
-  double lost_percent() const {
-    return judged ? 100.0 * static_cast<double>(lost) / static_cast<double>(judged)
-                  : std::numeric_limits<double>::quiet_NaN();
-  }
+  double lost_percent() const { return percent_of(lost, judged); }
 };
 
 /// How far the features of a picture lie from where the reference has them, in pixels. Both are pictures of one scene

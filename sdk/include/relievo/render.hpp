@@ -50,7 +50,8 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, std::s
                             std::string_view shader_target);
 
 /// Bakes what is missing in `maps`, makes the job and runs it. With several meshes and requests: a result for each, in
-/// the same order, of one Job (but the oracle's pictures, whose hits are those of a mesh in a stage, of one each).
+/// the same order, of one Job (but the oracle's pictures, whose hits are those of a mesh in a stage, of one for each of
+/// these). Maps that are all there are only read: several threads may draw with them.
 Result<RenderResult> render(Backend& backend, const Registry& registry, const Scene& scene, const Mesh& mesh,
                             MapSet& maps, const RenderRequest& request, std::vector<std::string>* messages = nullptr);
 

@@ -39,25 +39,28 @@ std::map<std::string, double> values_on(const Registry& registry, const BackendI
 
 /// How often a Job traces.
 struct TraceRounds {
-  int timed = 1;         ///< rounds over all sets of rays and all requests
-  bool warm_up = false;  ///< before them each request over the first set, not timed: drivers compile what they run first
+  int timed = 1;  ///< rounds over all sets of rays and all requests
+  /// Before them each request over the first set, not timed: drivers compile what they run first.
+  bool warm_up = false;
 };
 
 /// A Job that traces all rays with each request in turn, round after round.
 /// Rays keep their order; whole tiles of u and v are split off first, so that uv may be far from 0.
 /// `maps` holds every map that the techniques require. Errors: as of compose and compile; "trace.no-rays".
 Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const Ray> rays,
-                           std::span<const TraceRequest> requests, std::string_view shader_target, TraceRounds rounds = {});
+                           std::span<const TraceRequest> requests, std::string_view shader_target,
+                           TraceRounds rounds = {});
 
 /// The same for several sets of rays: requests that differ in uniform values alone share a program, and all sets do.
-/// After the warm-up, command (round · sets + s) · requests + k traces set s with request k. With `read_hits`, read-back
-/// s · requests + k holds its hits; without, nothing is read back, and the job's times are all that is wanted of it.
+/// After the warm-up, command (round · sets + s) · requests + k traces set s with request k. With `read_hits`,
+/// read-back s · requests + k holds its hits; without, nothing is read back, and the job's times are all that is wanted
+/// of it.
 Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const std::vector<Ray>> sets,
-                           std::span<const TraceRequest> requests, std::string_view shader_target,
-                           TraceRounds rounds, bool read_hits);
+                           std::span<const TraceRequest> requests, std::string_view shader_target, TraceRounds rounds,
+                           bool read_hits);
 
-/// What each timed round of such a job took for each set and request: `seconds[s · requests + k]`, one value a round, by
-/// the GPU's clock; empty without timestamps.
+/// What each timed round of such a job took for each set and request: `seconds[s · requests + k]`, one value a round,
+/// by the GPU's clock; empty without timestamps.
 std::vector<std::vector<double>> trace_seconds(const JobResult& result, std::size_t sets, std::size_t requests,
                                                TraceRounds rounds);
 

@@ -165,8 +165,9 @@ Result<ComposedProgram> compose_bake(const Registry& registry, std::string_view 
   SourceExpander expander(registry.sources);
   std::string text =
       axis_macros(HeightFilter::exact, address, false, Aov::color) +
-      fmt::format("#define RELIEVO_BAKE_PHASE {}\n#define RELIEVO_BAKE_BUFFERS {}\n#define RELIEVO_BAKE_LAYERS_AT_ONCE {}\n",
-                  bake.phase, bake.buffers, (*map)->layers_at_once) +
+      fmt::format(
+          "#define RELIEVO_BAKE_PHASE {}\n#define RELIEVO_BAKE_BUFFERS {}\n#define RELIEVO_BAKE_LAYERS_AT_ONCE {}\n",
+          bake.phase, bake.buffers, (*map)->layers_at_once) +
       declare_parameters(*slots);
   Result<std::string> maps = declare_maps(inputs, expander);
   if (!maps) return tl::unexpected(maps.error());

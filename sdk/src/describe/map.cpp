@@ -98,10 +98,11 @@ void read_passes(TomlReader& reader, MapDescriptor& map) {
 }
 
 void read_map(TomlReader& reader, MapDescriptor& map) {
-  reader.allow_keys({"schema", "name",       "title",  "source",           "summary", "inputs",       "channels",
-                     "levels", "dimension",  "layers", "layers_parameter", "passes",  "layers_apart", "layers_at_once",
-                     "rounding", "texels", "sampler",    "image",  "binding",          "module",  "access",       "features",
-                     "loops",  "parameters", "axes"});
+  reader.allow_keys({"schema",           "name",     "title",        "source",         "summary",
+                     "inputs",           "channels", "levels",       "dimension",      "layers",
+                     "layers_parameter", "passes",   "layers_apart", "layers_at_once", "rounding",
+                     "texels",           "sampler",  "image",        "binding",        "module",
+                     "access",           "features", "loops",        "parameters",     "axes"});
   map.inputs = reader.names("inputs");
   map.channels = reader.integer("channels", 1, 4);
   map.levels = reader.choice_of<MapLevels>("levels", level_names, MapLevels::single);

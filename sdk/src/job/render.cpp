@@ -51,12 +51,9 @@ class Renderer {
   Rendered draw(std::span<const Mesh> meshes, MapSet& maps, std::span<const RenderRequest> requests) {
     std::vector<RenderRequest> suited(requests.begin(), requests.end());
     for (RenderRequest& request : suited) {
-      Result<std::vector<std::string>> needed = required_maps(registry_, request.stage, request.technique);
-      if (!needed) return tl::unexpected(needed.error());
-      for (const std::string& map : *needed) {
-        if (Status status = bake_map(backend_, registry_, map, maps, request.values, messages_); !status)
-          return tl::unexpected(status.error());
-      }
+      Status baked =
+          bake_required_maps(backend_, registry_, request.stage, request.technique, maps, request.values, messages_);
+      if (!baked) return tl::unexpected(baked.error());
       request.values = values_on(registry_, backend_.info(), std::move(request.values));
     }
     Result<Job> job = make_render_job(registry_, scene_, meshes, maps, suited, backend_.info().shader_target);
@@ -70,6 +67,7 @@ class Renderer {
       for (const RenderRequest& request : requests) {
         const std::size_t k = rendered.size();
         rendered.push_back(result_of(result->read_backs.at(k), scene_.image, request.aov));
+        result->read_backs[k] = {};  // pictures may be large
         rendered.back().degenerate_triangles = degenerate;
         if (!result->command_seconds.empty()) rendered.back().seconds = result->command_seconds[k];
       }
@@ -141,8 +139,7 @@ struct RequestGroup {
 
 Result<std::vector<RenderResult>> render(Backend& backend, const Registry& registry, const Scene& scene,
                                          std::span<const Mesh> meshes, MapSet& maps,
-                                         std::span<const RenderRequest> requests,
-                                         std::vector<std::string>* messages) {
+                                         std::span<const RenderRequest> requests, std::vector<std::string>* messages) {
   RequestGroup drawn;
   std::vector<RequestGroup> replayed;
   for (std::size_t k = 0; k < requests.size(); ++k) {

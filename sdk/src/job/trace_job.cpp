@@ -226,8 +226,8 @@ class RaySet {
 }  // namespace
 
 Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const std::vector<Ray>> sets,
-                           std::span<const TraceRequest> requests, std::string_view shader_target,
-                           TraceRounds rounds, bool read_hits) {
+                           std::span<const TraceRequest> requests, std::string_view shader_target, TraceRounds rounds,
+                           bool read_hits) {
   if (Status status = check_height(maps); !status) return tl::unexpected(status.error());
   Job job;
   job.name = "trace";
@@ -263,8 +263,7 @@ Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::sp
 }
 
 Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::span<const Ray> rays,
-                           std::span<const TraceRequest> requests, std::string_view shader_target,
-                           TraceRounds rounds) {
+                           std::span<const TraceRequest> requests, std::string_view shader_target, TraceRounds rounds) {
   const std::vector<Ray> set(rays.begin(), rays.end());
   return make_trace_job(registry, maps, {&set, 1}, requests, shader_target, rounds, true);
 }
@@ -299,12 +298,8 @@ Result<std::vector<TraceResult>> trace(Backend& backend, const Registry& registr
                                        std::span<const Ray> rays, std::span<const TraceRequest> requests,
                                        TraceRounds rounds, std::vector<std::string>* messages) {
   for (const TraceRequest& request : requests) {
-    Result<std::vector<std::string>> needed = required_maps(registry, "ray", request.technique);
-    if (!needed) return tl::unexpected(needed.error());
-    for (const std::string& map : *needed) {
-      if (Status status = bake_map(backend, registry, map, maps, request.values, messages); !status)
-        return tl::unexpected(status.error());
-    }
+    Status baked = bake_required_maps(backend, registry, "ray", request.technique, maps, request.values, messages);
+    if (!baked) return tl::unexpected(baked.error());
   }
   std::vector<TraceRequest> suited(requests.begin(), requests.end());
   for (TraceRequest& request : suited) request.values = values_on(registry, backend.info(), std::move(request.values));

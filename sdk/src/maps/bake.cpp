@@ -213,4 +213,15 @@ Status bake_map(Backend& backend, const Registry& registry, std::string_view nam
   return {};
 }
 
+Status bake_required_maps(Backend& backend, const Registry& registry, std::string_view stage,
+                          std::string_view technique, MapSet& maps, const std::map<std::string, double>& values,
+                          std::vector<std::string>* messages) {
+  Result<std::vector<std::string>> needed = required_maps(registry, stage, technique);
+  if (!needed) return tl::unexpected(needed.error());
+  for (const std::string& map : *needed) {
+    if (Status status = bake_map(backend, registry, map, maps, values, messages); !status) return status;
+  }
+  return {};
+}
+
 }  // namespace relievo

@@ -18,7 +18,8 @@ struct BakePlan {
 };
 
 /// Layers that read one another stay together. Of others as many as fit in a storage buffer of the backend, and in four
-/// times the height map (or 8 MiB): a Job's texels are there three times while they are read back.
+/// times the height map (or 8 MiB): a Job's texels are there three times while they are read back. Layers that one run
+/// writes stay together where they fit.
 /// Errors: "maps.too-large" when what stays together does not fit in most_bake_buffers.
 Result<BakePlan> plan_bake(const MapData& output, const MapDescriptor& descriptor, const MapData& height,
                            const BackendInfo& backend);

@@ -6,6 +6,11 @@
 #include "relievo/measure.hpp"
 
 namespace relievo {
+
+bool is_finite(const Hit& hit) {
+  return std::isfinite(hit.t) && std::isfinite(hit.u) && std::isfinite(hit.v) && std::isfinite(hit.h);
+}
+
 namespace {
 
 /// Beyond these two hits are on different layers of the relief (design.md §5).
@@ -14,10 +19,6 @@ constexpr double wrong_layer_height = 0.02;
 
 bool is_hit(const Hit& hit) {
   return hit.status == HitStatus::hit || hit.status == HitStatus::inside;
-}
-
-bool is_finite(const Hit& hit) {
-  return std::isfinite(hit.t) && std::isfinite(hit.u) && std::isfinite(hit.v) && std::isfinite(hit.h);
 }
 
 struct Deviations {

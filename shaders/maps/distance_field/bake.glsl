@@ -18,7 +18,7 @@ vec4 distance_field_to(float squared, float aside, vec4 drop) {
 void relievo_bake(ivec2 texel) {
   ivec2 extent = textureSize(relievo_height_map, 0);
   int layer = relievo_bake_layer();
-  vec4 height = (float(layer) + vec4(0.5, 1.5, 2.5, 3.5)) / float(distance_field_layers);
+  precise vec4 height = (float(layer) + vec4(0.5, 1.5, 2.5, 3.5)) / float(distance_field_layers);
   precise float texel_size = 1.0 / (float(max(extent.x, extent.y)) * distance_field_scale);
   precise float aside = texel_size * texel_size;
   vec4 shortest = distance_field_to(0.0, aside, height - relievo_max_pyramid_at(texel, 0));

@@ -1,0 +1,29 @@
+#include "evaluation/scene_run.hpp"
+
+namespace relievo::cli {
+
+std::size_t pictures_at_once(const SceneRun& run, std::size_t each) {
+  const SceneImage& size = run.parts.scene.image;
+  const std::size_t pixels = static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+  return std::max<std::size_t>(1, run.input.pixels_at_once / std::max<std::size_t>(1, pixels * each));
+}
+
+std::vector<RenderRequest> requests_of(const SceneRun& run, const std::string& stage,
+                                       std::span<const std::string> techniques, Aov aov) {
+  std::vector<RenderRequest> requests;
+  for (const std::string& technique : techniques)
+    requests.push_back({stage, technique, HeightFilter::exact, aov, run.input.values});
+  return requests;
+}
+
+Result<std::vector<RenderResult>> draw(SceneRun& run, std::span<const Mesh> meshes,
+                                       std::span<const RenderRequest> requests) {
+  return render(run.backend, *run.input.registry, run.parts.scene, meshes, run.maps, requests,
+                &run.evaluation.messages);
+}
+
+Result<std::vector<RenderResult>> draw(SceneRun& run, std::span<const RenderRequest> requests) {
+  return draw(run, {&run.parts.mesh, 1}, requests);
+}
+
+}  // namespace relievo::cli

@@ -1,0 +1,162 @@
+/// The pictures of an evaluation do not depend on how many are drawn at once, and a backend that draws something else
+/// the second time, or fails, is noticed.
+#include "evaluation/scene_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "support/height_maps.hpp"
+#include "support/pipeline.hpp"
+#include "support/scenes.hpp"
+
+namespace relievo::cli {
+namespace {
+
+constexpr int pixels = 32 * 32;
+
+/// Passes Jobs on to a real backend, which several threads may not use: each has its own.
+class Watched : public Backend {
+ public:
+  explicit Watched(const std::string& name) {
+    Result<std::unique_ptr<Backend>> opened = open_backend(name);
+    if (opened) real_ = *std::move(opened);
+  }
+  const BackendInfo& info() const override { return real_->info(); }
+  Result<JobResult> execute(const Job& job) override {
+    if (++jobs == failing_job) return fail(ErrorCode::backend, "test.lost", "the device is lost");
+    most_pictures = std::max(most_pictures, job.read_backs.size());
+    Result<JobResult> result = real_->execute(job);
+    if (result && job.read_backs.size() == altered_size) result->read_backs[altered].front() ^= std::byte{1};
+    return result;
+  }
+
+  int jobs = 0, failing_job = -1;
+  std::size_t most_pictures = 0;
+  std::size_t altered_size = 0, altered = 0;  ///< the Job that returns so much, and what of it is another picture
+
+ private:
+  std::unique_ptr<Backend> real_;
+};
+
+struct Drawing {
+  Drawing() {
+    input.registry = &test::registry();
+    input.techniques = {"relief", "parallax", "exact"};
+    input.repeats = 1;
+    input.time = false;
+    LoadedScene parts{test::make_scene(MeshKind::torus, 32), {}, test::smooth_noise_map(20, 16)};
+    parts.mesh = test::mesh_of(parts.scene);
+    input.scenes.emplace_back("ring", std::move(parts));
+    add("vulkan");
+    add("opengl");
+  }
+
+  void add(const std::string& name) {
+    auto backend = std::make_unique<Watched>(name);
+    watched[name] = backend.get();
+    backends[name] = std::move(backend);
+  }
+
+  Status run() {
+    Progress progress("pictures", 1);
+    Status status = evaluate_pictures(input, backends, evaluation, progress);
+    return status ? evaluate_cracks(input, backends, evaluation, progress) : status;
+  }
+
+  /// All rows, as text.
+  std::vector<std::string> rows() const {
+    std::vector<std::string> texts;
+    for (const PictureRow& p : evaluation.pictures)
+      texts.push_back(fmt::format("{} {} {} {} {}", p.scene, p.stage, p.technique, p.backend, p.repeatable));
+    for (const PictureAgreement& a : evaluation.picture_agreements) {
+      texts.push_back(fmt::format("{} {} {} {} {} {} {} {} {}", a.scene, a.stage, a.technique, a.left, a.right,
+                                  a.difference.psnr, a.difference.mask_iou, a.flip,
+                                  a.offsets ? a.offsets->pixels.p99 : -1));
+    }
+    for (const CrackRow& c : evaluation.cracks)
+      texts.push_back(fmt::format("{} {} {} {} {}", c.scene, c.technique, c.backend, c.seed, c.cracks));
+    return texts;
+  }
+
+  std::vector<std::string> changing() const {
+    std::vector<std::string> names;
+    for (const PictureRow& p : evaluation.pictures) {
+      if (!p.repeatable) names.push_back(fmt::format("{} {} {}", p.stage, p.technique, p.backend));
+    }
+    return names;
+  }
+
+  EvaluationInput input;
+  OpenBackends backends;
+  std::map<std::string, Watched*> watched;
+  Evaluation evaluation;
+};
+
+TEST(EvaluatePictures, AreTheSameHoweverManyAreDrawnAtOnce) {
+  Drawing all, each;
+  all.input.repeats = each.input.repeats = 2;
+  each.input.pixels_at_once = pixels;
+  const Status drawn = all.run(), drawn_each = each.run();
+  ASSERT_TRUE(drawn) << format(drawn.error());
+  ASSERT_TRUE(drawn_each) << format(drawn_each.error());
+  EXPECT_EQ(all.rows(), each.rows());
+  EXPECT_EQ(all.evaluation.messages, std::vector<std::string>());
+  // Per backend: 3 of surface, 3 of prism, 1 of vertex, and the oracle's two.
+  EXPECT_EQ(all.evaluation.pictures.size(), 2U * 9);
+  EXPECT_EQ(all.evaluation.cracks.size(), 2U * 3 * 2) << "of relief and exact, in three orders";
+  EXPECT_EQ(all.watched["opengl"]->most_pictures, 2U * 7) << "all again, in two rounds";
+  EXPECT_EQ(each.watched["opengl"]->most_pictures, 3U) << "the random orders, of one technique";
+}
+
+TEST(EvaluatePictures, OneThatChangesIsFound) {
+  for (const bool time : {false, true}) {
+    Drawing drawing;
+    drawing.input.repeats = 3;
+    drawing.input.time = time;
+    drawing.watched["opengl"]->altered_size = 3 * 7;
+    drawing.watched["opengl"]->altered = 2 * 7 + 4;  // in the last round, after three of prism and one of surface
+    const Status drawn = drawing.run();
+    ASSERT_TRUE(drawn) << format(drawn.error());
+    EXPECT_EQ(drawing.changing(), std::vector<std::string>{"surface parallax opengl"});
+    for (const PictureRow& row : drawing.evaluation.pictures)
+      EXPECT_EQ(row.seconds > 0, time && row.technique != "oracle") << row.technique << row.stage;
+  }
+}
+
+TEST(EvaluatePictures, TheErrorOfAnyJobComesOut) {
+  Drawing good;
+  ASSERT_TRUE(good.run());
+  const int jobs = good.watched["vulkan"]->jobs;
+  ASSERT_GT(jobs, 5);
+  for (int failing = 1; failing <= jobs; ++failing) {
+    Drawing bad;
+    bad.watched["vulkan"]->failing_job = failing;
+    const Status drawn = bad.run();
+    ASSERT_FALSE(drawn) << "job " << failing << " of " << jobs;
+    EXPECT_EQ(drawn.error().id, "test.lost");
+  }
+}
+
+TEST(EvaluatePictures, OfTheOracleItselfNeedNoMap) {
+  Drawing drawing;
+  drawing.input.techniques = {"oracle"};
+  const Status drawn = drawing.run();
+  ASSERT_TRUE(drawn) << format(drawn.error());
+  for (const PictureAgreement& a : drawing.evaluation.picture_agreements) {
+    if (a.right != "oracle" || a.stage != "prism") continue;
+    EXPECT_EQ(a.difference.largest, 0);
+  }
+}
+
+TEST(EvaluatePictures, OfOneBackendAndNoTechniques) {
+  Drawing drawing;
+  drawing.input.techniques.clear();
+  drawing.backends.erase("opengl");
+  const Status drawn = drawing.run();
+  ASSERT_TRUE(drawn) << format(drawn.error());
+  EXPECT_EQ(drawing.evaluation.pictures.size(), 3U) << "the oracle's two, and the mesh's own";
+}
+
+}  // namespace
+}  // namespace relievo::cli

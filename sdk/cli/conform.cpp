@@ -185,7 +185,9 @@ void add_conform(CLI::App& app, Context& context) {
   command->add_option("--ray-image", options->ray_image, "Rays a side of the ray image")
       ->check(CLI::Range(1, 8192))
       ->capture_default_str();
-  command->add_option("--repeats", options->repeats, "Runs that must be byte-identical")
+  command
+      ->add_option("--repeats", options->repeats,
+                   "Pictures are drawn again so often if more than once, and must be byte-identical")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   command->add_option("--set", options->set, "technique.parameter=value");

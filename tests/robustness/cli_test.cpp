@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <cerrno>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "relievo/image.hpp"
@@ -343,6 +345,16 @@ TEST_F(Cli, PipesAndLinksAreWrittenAndNotReplaced) {
   EXPECT_EQ(run_relievo(words).exit_code, 0);
   EXPECT_TRUE(fs::is_symlink(path("dangling.csv")));
   EXPECT_EQ(TemporaryFolder::read(path("nowhere.csv")), arrived);
+}
+
+TEST_F(Cli, LinksThatLeadNowhereButToThemselvesAreRefusedAndStay) {
+  fs::create_symlink("b.csv", path("a.csv"));
+  fs::create_symlink("a.csv", path("b.csv"));
+  std::vector<std::string> words = trace(path("height.pfm"), path("rays.csv"));
+  words.back() = path("a.csv");
+  expect_refused(words, 1, {"a.csv", "cannot be written", std::strerror(ELOOP)});
+  EXPECT_EQ(fs::read_symlink(path("a.csv")), "b.csv");
+  EXPECT_EQ(fs::read_symlink(path("b.csv")), "a.csv");
 }
 
 const std::string program = RELIEVO_BINARY_DIR "/bin/relievo";

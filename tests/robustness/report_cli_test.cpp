@@ -98,6 +98,22 @@ TEST_F(ReportCli, AQuickReportHasEveryFileAndTheyParse) {
   EXPECT_GT(shown, 10U);
 }
 
+TEST_F(ReportCli, AFullReportSweepsFilesOnAllBackendsAndMapsMadeByRuleOnOne) {
+  const ChildResult result =
+      run_relievo({"report", "--full", "--height", path("hills.pfm"), "--techniques", "parallax", "--ray-image", "4",
+                   "--sweep-image", "2", "--repeats", "1", "-o", path("out")});
+  ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
+  using Names = std::set<std::string>;
+  std::map<std::string, Names> backends;  // by map
+  for (const auto& row : table("report.csv")) backends[row.at("map")].insert(row.at("backend"));
+  EXPECT_EQ(backends.size(), 7U);
+  for (const auto& [map, names] : backends)
+    EXPECT_EQ(names, map == "hills" ? (Names{"vulkan", "opengl"}) : Names{"vulkan"}) << map;
+  EXPECT_NE(result.out.find("not run: sweep of the height maps made by rule on all backends but the first"),
+            std::string::npos)
+      << result.out;
+}
+
 TEST_F(ReportCli, NothingToReportOnIsRefused) {
   const ChildResult none = run_relievo({"report", "-o", path("out")});
   EXPECT_EQ(none.exit_code, 1);

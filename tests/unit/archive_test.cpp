@@ -347,6 +347,14 @@ TEST(ArchiveWriter, WritesThroughALinkAndLeavesIt) {
   EXPECT_EQ(folder.count(), 2u);
 }
 
+TEST(ArchiveWriter, RefusesALinkThatLeadsToItself) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("a.rva", folder / "a.rva");
+  EXPECT_EQ(id_of(ArchiveWriter::create(folder / "a.rva", sample_axes())), "archive.write");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "a.rva"));
+  EXPECT_EQ(folder.count(), 1u);
+}
+
 TEST(ArchiveWriter, FinishesOnce) {
   const TemporaryFolder folder;
   ArchiveWriter writer = test::expect_value(ArchiveWriter::create(folder / "a.rva", sample_axes()));

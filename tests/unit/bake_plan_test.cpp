@@ -72,6 +72,8 @@ TEST(BakePlan, LayersOfOneRunStayTogetherWhereTheyFit) {
   bake.backend.max_storage_buffer = 128 * mib;
   bake.height = {"height", 1024, 1024, 1, {}};
   EXPECT_EQ(bake.plan()->layers, 4) << "of five that fit";
+  bake.height.width = bake.height.height = 2048;
+  EXPECT_EQ(bake.plan()->layers, 9) << "all";
   bake.backend.max_storage_buffer = 4 * mib;
   EXPECT_EQ(bake.plan()->layers, 1);
 }

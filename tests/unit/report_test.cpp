@@ -194,6 +194,9 @@ TEST(ReportSettings, ALoopIsTriedAroundItsDefaultWithinItsRange) {
 
 TEST(ReportSettings, ABoundIsTriedWhereItBeginsToCut) {
   EXPECT_EQ(counts_tried(1, 16777216, 65536), (std::vector<int>{-1, 16, 64, 256}));
+  EXPECT_EQ(counts_tried(1, 65536, 512), (std::vector<int>{-1, 16, 64, 256}));
+  EXPECT_EQ(counts_tried(1, 65536, 256), (std::vector<int>{-1, 64, 128, 512, 1024})) << "a search";
+  EXPECT_EQ(counts_tried(1, 65536, 100, {{"t.steps", 400}}), (std::vector<int>{-1, 100, 200, 800, 1600})) << "it too";
 }
 
 TEST(ReportCsv, QuotesNamesAndLeavesOutWhatWasNotMeasured) {

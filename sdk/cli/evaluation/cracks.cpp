@@ -1,8 +1,10 @@
 /// Cracks between prisms: pictures under random vertex orders against the finely displaced mesh.
 #include <fmt/format.h>
+#include <span>
 
 #include "evaluation/scene_run.hpp"
-#include "relievo/image.hpp"
+#include "relievo/measure.hpp"
+#include "relievo/mesh.hpp"
 
 namespace relievo::cli {
 

@@ -65,9 +65,12 @@ struct EvaluationInput {
   std::vector<std::pair<std::string, LoadedScene>> scenes;  ///< name and parts
   std::map<std::string, double> values;                     ///< "owner.parameter"
   int ray_image = 1024;                                     ///< rays a case: ray_image²
-  int repeats = 3;  ///< timed rounds; pictures are drawn once more, and again this often if it is more than 1
-  std::uint64_t crack_seeds = 3;                      ///< random vertex orders that prisms are drawn in
-  std::size_t pixels_at_once = std::size_t{1} << 22;  ///< of one Job's pictures: bounds what they take in memory
+  /// Timed rounds of rays. If more than 1, pictures are drawn again so often, and timed each time but the first.
+  int repeats = 3;
+  std::uint64_t crack_seeds = 3;  ///< random vertex orders that prisms are drawn in
+  std::size_t pixels_at_once =
+      std::size_t{1}
+      << 22;  ///< of one Job's pictures, which bounds their memory: two, and one in all orders, stay together
   bool time = true;
   std::filesystem::path pictures;  ///< folder for PNGs; empty = none are written
   std::shared_ptr<BakedMaps> baked = std::make_shared<BakedMaps>();

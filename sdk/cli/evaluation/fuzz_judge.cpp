@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <cmath>
 
 #include "evaluation/fuzz.hpp"
 #include "evaluation/hard_run.hpp"

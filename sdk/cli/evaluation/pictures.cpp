@@ -1,6 +1,8 @@
 /// The drawing stages: pictures per backend, repeated, against each other, the oracle and the finely displaced mesh.
 #include <fmt/format.h>
 #include <algorithm>
+#include <cstdlib>
+#include <iterator>
 #include <list>
 #include <memory>
 #include <optional>
@@ -178,21 +180,32 @@ Status run_stage(SceneRun& run, const StageDescriptor& stage) {
   });
 }
 
-/// Draws pictures again, in rounds of one Job, to see whether they are the same. What the first round takes is not
-/// told: drivers compile in it.
-Status draw_rows_again(SceneRun& run, std::span<PictureRow* const> rows) {
+/// Draws pictures again in rounds of one Job, to see whether they are the same, and adds what each round but the first
+/// takes: drivers compile in that one.
+Status draw_rounds(SceneRun& run, std::span<PictureRow* const> rows, std::size_t rounds,
+                   std::vector<std::vector<double>>& seconds) {
   std::vector<RenderRequest> requests;
-  for (int round = 0; round < run.input.repeats; ++round) {
+  for (std::size_t round = 0; round < rounds; ++round) {
     for (const PictureRow* row : rows)
       requests.push_back({row->stage, row->technique, HeightFilter::exact, Aov::color, run.input.values});
   }
   Result<std::vector<RenderResult>> drawn = draw(run, requests);
   if (!drawn) return tl::unexpected(drawn.error());
-  std::vector<std::vector<double>> seconds(rows.size());
   for (std::size_t i = 0; i < drawn->size(); ++i) {
     PictureRow& row = *rows[i % rows.size()];
     row.repeatable = row.repeatable && (*drawn)[i].color == run.pictures.at({row.stage, row.technique});
     if (i >= rows.size()) seconds[i % rows.size()].push_back((*drawn)[i].seconds);
+  }
+  return {};
+}
+
+Status draw_rows_again(SceneRun& run, std::span<PictureRow* const> rows) {
+  const std::size_t timed_at_once = std::max<std::size_t>(2, pictures_at_once(run, rows.size())) - 1;
+  std::vector<std::vector<double>> seconds(rows.size());
+  for (auto left = static_cast<std::size_t>(run.input.repeats - 1); left > 0;) {
+    const std::size_t timed = std::min(left, timed_at_once);
+    if (Status status = draw_rounds(run, rows, timed + 1, seconds); !status) return status;
+    left -= timed;
   }
   for (std::size_t k = 0; k < rows.size() && run.input.time; ++k) rows[k]->seconds = median(seconds[k]);
   return {};
@@ -209,10 +222,12 @@ Status draw_again(SceneRun& run) {
                     [&](std::span<PictureRow* const> some) { return draw_rows_again(run, some); });
 }
 
-/// Before runs share the maps.
+/// Before runs share the maps: those of the stage, which the oracle's rays need too, and of the techniques.
 Status bake_maps(SceneRun& run, const StageDescriptor& stage) {
-  for (const std::string& technique : techniques_of(run, stage)) {
-    if (technique == replayed) continue;  // its map is made for each picture
+  std::vector<std::string> techniques = techniques_of(run, stage);
+  std::replace(techniques.begin(), techniques.end(), replayed, std::string());  // its map is made for each picture
+  techniques.emplace_back();
+  for (const std::string& technique : techniques) {
     Status status = bake_required_maps(run.backend, *run.input.registry, stage.name, technique, run.maps,
                                        run.input.values, &run.evaluation.messages);
     if (!status) return status;
@@ -260,17 +275,12 @@ void compare_silhouettes(const std::string& scene, const std::string& backend, c
 void compare_backends(const std::string& scene, const std::list<SceneRun>& runs, Evaluation& evaluation) {
   const SceneRun& left = runs.front();
   for (auto right = std::next(runs.begin()); right != runs.end(); ++right) {
+    const std::string& other = right->backend.info().name;
     for (const auto& [key, pixels] : left.pictures) {
       auto match = right->pictures.find(key);
       if (match == right->pictures.end()) continue;
-      evaluation.picture_agreements.push_back({scene,
-                                               key.first,
-                                               key.second,
-                                               left.backend.info().name,
-                                               right->backend.info().name,
-                                               compare_images(pixels, match->second),
-                                               -1,
-                                               {}});
+      evaluation.picture_agreements.push_back({scene, key.first, key.second, left.backend.info().name, other,
+                                               compare_images(pixels, match->second), -1, std::nullopt});
     }
   }
 }
@@ -299,6 +309,8 @@ Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, E
     }
     compare_backends(name, runs, evaluation);
   }
+  if (input.repeats == 1 && !input.scenes.empty())
+    evaluation.not_run.push_back({"pictures again, for their times and what changes", "1 repeat draws them once"});
   return {};
 }
 

@@ -13,7 +13,8 @@ namespace relievo::cli {
 
 namespace {
 
-/// Hits held at once stay below this; fewer Jobs upload the maps and make the pipelines fewer times.
+/// Hits that a backend gives at once, unless one angle with one filter has more; fewer Jobs upload the maps and make
+/// the pipelines fewer times.
 constexpr std::size_t most_hits_at_once = std::size_t{1} << 21;
 
 /// Some angles of one case with some filters, on all backends.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <future>
 #include <map>
 #include <span>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "evaluation/evaluation.hpp"
+#include "relievo/render.hpp"
 
 namespace relievo::cli {
 

@@ -13,10 +13,12 @@ namespace {
 /// A default beyond this is no search but a bound on one.
 constexpr double largest_search = 256;
 
+/// `standard`: the count otherwise used, that of the descriptor or of `--set`.
 std::set<int> counts_of(const Parameter& loop, double standard, const SweepPlan& plan) {
   std::set<int> counts;
-  if (standard > largest_search) counts.insert(plan.budgets.begin(), plan.budgets.end());
-  if (standard <= largest_search) {
+  if (loop.value > largest_search) {
+    counts.insert(plan.budgets.begin(), plan.budgets.end());
+  } else {
     for (double factor : plan.factors) counts.insert(static_cast<int>(std::lround(factor * standard)));
   }
   std::set<int> allowed;

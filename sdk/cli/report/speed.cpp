@@ -140,12 +140,13 @@ std::string speed_section(const Report& report) {
       "<section><h2>Speed against error</h2>\n"
       "<p>Each technique at its defaults, and with each of its loops at other counts, one at a time, with both "
       "filters: "
-      "{} rows of {} rays, on {}; times are medians of {} runs, interleaved. Time is a ratio to {} at its defaults "
+      "{} rows of {} rays, on {}{}; times are medians of {} runs, interleaved. Time is a ratio to {} at its defaults "
       "with "
       "the hardware filter, which runs before each round. Here a ray whose budget runs out counts as wrong. Plots and "
       "tables are of {}; down and to the left is better. Solid: hardware filter; dashed: exact. What is never wrong is "
       "drawn at half a ray.</p>\n",
       sweep.rows.size(), plan.image * plan.image, escape(fmt::format("{}", fmt::join(sweep.backends, " and "))),
+      sweep.backends.size() > 1 && plan.maps_elsewhere < sweep.maps.size() ? ", maps made by rule on the first" : "",
       plan.repeats, sweep.reference.empty() ? "nothing" : escape(sweep.reference), escape(sweep.backends.front()));
   html += spread_html(sweep) + winners_html(sweep);
   bool open = true;

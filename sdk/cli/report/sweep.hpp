@@ -1,5 +1,5 @@
 /// Speed against error: every technique with several counts of each of its loops, on every map, at every angle, with
-/// both filters, on every backend.
+/// both filters, on the first backend; and some of the maps on every backend.
 #pragma once
 
 #include <string>
@@ -77,8 +77,8 @@ struct Sweep {
   double seconds = 0;  ///< wall time of it all
 };
 
-/// All settings of the techniques of `input`, technique by technique. A loop whose default is in the thousands is a
-/// bound that rays hardly reach: there the plan's budgets are tried, where it begins to cut.
+/// All settings of the techniques of `input`, technique by technique. A loop whose default is in the hundreds is a
+/// bound that few rays reach: there the plan's budgets are tried, where it begins to cut.
 Result<std::vector<Setting>> make_settings(const EvaluationInput& input, const SweepPlan& plan);
 
 /// Runs the sweep over all ray cases of `input`. A backend that cannot be opened becomes a NotRun.

@@ -44,7 +44,8 @@ Result<BakePlan> plan_bake(const MapData& output, const MapDescriptor& descripto
     const std::size_t job_bytes = std::max(least_job_bytes, 4 * texture_bytes(height));
     const std::size_t fitting = std::min(room, job_bytes / sizeof(float)) / plan.layer_floats;
     plan.layers = static_cast<int>(std::clamp<std::size_t>(fitting, 1, static_cast<std::size_t>(output.depth)));
-    if (plan.layers > descriptor.layers_at_once) plan.layers -= plan.layers % descriptor.layers_at_once;
+    if (plan.layers < output.depth && plan.layers > descriptor.layers_at_once)
+      plan.layers -= plan.layers % descriptor.layers_at_once;
   }
   const std::size_t job_floats = static_cast<std::size_t>(plan.layers) * plan.layer_floats;
   plan.buffer_floats = std::min(job_floats, room);

@@ -59,12 +59,12 @@ std::string introduction(const Report& report) {
       "{} are held "
       "against an exact oracle, which finds the first hit of every ray on the bilinear surface in double precision, "
       "and against each "
-      "other across backends: {} rays a row, the median of {} runs. Speed is quoted as a ratio to relief mapping in "
+      "other across backends: {} rays a row, {}. Speed is quoted as a ratio to relief mapping in "
       "the same run, "
       "beside the steps and texel reads that it took; the milliseconds are this machine's.{}</p>\n"
       "<p class=\"verdict {}\">{}</p>\n",
       escape(fmt::format("{}", fmt::join(report.techniques, ", "))), report.ray_image * report.ray_image,
-      report.repeats,
+      report.repeats == 1 ? "timed once" : fmt::format("the median of {} runs", report.repeats),
       report.values.empty() ? "" : escape(fmt::format(" Set otherwise than described: {}.", to_text(report.values))),
       failed == 0 ? "pass" : "fail", escape(verdict));
 }

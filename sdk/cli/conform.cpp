@@ -187,7 +187,7 @@ void add_conform(CLI::App& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--repeats", options->repeats,
-                   "Pictures are drawn again so often if more than once, and must be byte-identical")
+                   "If more than 1, pictures are drawn again so often, and must be byte-identical")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   command->add_option("--set", options->set, "technique.parameter=value");

@@ -261,8 +261,9 @@ void add_report(CLI::App& app, Context& context) {
       ->take_last()
       ->capture_default_str();
   command
-      ->add_option("--repeats", options->repeats,
-                   "Timed runs of rays; pictures are drawn again so often if more than once, and timed but once")
+      ->add_option(
+          "--repeats", options->repeats,
+          "Timed runs of rays; if more than 1, pictures are drawn again so often, and timed each time but the first")
       ->check(CLI::Range(1, 100))
       ->take_last()
       ->capture_default_str();

@@ -112,6 +112,9 @@ TEST(RenderJob, RequestsShareProgramsMapsMeshesAndDepth) {
   std::set<int> vertices;
   for (const Command& command : job->commands) vertices.insert(std::get<Draw>(command).vertex_buffer);
   EXPECT_EQ(vertices.size(), 2U);
+  EXPECT_EQ(std::count_if(job->buffers.begin(), job->buffers.end(), [](const Buffer& b) { return b.name == "Scene"; }),
+            1)
+      << "which an engine writes anew when its camera moves";
   const auto alone = make_render_job(*registry, Scene{}, make_plane(), maps, requests[0], "spirv");
   ASSERT_TRUE(alone);
   EXPECT_EQ(job->name, alone->name + " and 2 more");

@@ -68,9 +68,8 @@ struct EvaluationInput {
   /// Timed rounds of rays. If more than 1, pictures are drawn again so often, and timed each time but the first.
   int repeats = 3;
   std::uint64_t crack_seeds = 3;  ///< random vertex orders that prisms are drawn in
-  std::size_t pixels_at_once =
-      std::size_t{1}
-      << 22;  ///< of one Job's pictures, which bounds their memory: two, and one in all orders, stay together
+  /// Of one Job's pictures, which bounds their memory: two, and one in all orders, stay together.
+  std::size_t pixels_at_once = std::size_t{1} << 22;
   bool time = true;
   std::filesystem::path pictures;  ///< folder for PNGs; empty = none are written
   std::shared_ptr<BakedMaps> baked = std::make_shared<BakedMaps>();

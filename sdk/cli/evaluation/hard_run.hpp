@@ -47,8 +47,8 @@ struct HardSummary {
   std::string technique;
   std::uint64_t judged = 0, faults = 0;
   double uv_p9999 = 0, height_p9999 = 0;  ///< of hits on the right layer: texels; H
-  std::uint64_t compared = 0,
-                differing = 0;  ///< between the first backend and the others: status, or t by more than equal_ulps
+  /// Rays between the first backend and the others; of these, those that are not are_equal.
+  std::uint64_t compared = 0, differing = 0;
 };
 
 struct HardResult {

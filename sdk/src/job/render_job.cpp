@@ -183,16 +183,18 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, std::s
   SharedPrograms programs;
   Result<std::vector<std::byte>> block = scene_block(scene);
   if (!block) return tl::unexpected(block.error());
+  std::vector<ResourceBinding> shared;
+  bind_buffer(0, scene_binding, make_buffer("Scene", block->data(), block->size()), job, shared);
   for (const RenderRequest& request : requests) {
     Result<DrawPlan> plan = plan_draw(registry, maps, request);
     if (!plan) return tl::unexpected(plan.error());
     Result<int> program = programs.index_of(plan->composed, shader_target, job);
     if (!program) return tl::unexpected(name_file_on_disk(program.error(), registry));
     plan->program = *program;
+    plan->resources = shared;
     if (Status status = bind_maps(plan->composed, maps, job, plan->resources); !status)
       return tl::unexpected(status.error());
     bind_parameters(plan->composed, job, plan->resources);
-    bind_buffer(0, scene_binding, make_buffer("Scene", block->data(), block->size()), job, plan->resources);
     keep_contract(job.programs[static_cast<std::size_t>(plan->program)], plan->resources);
     plans.push_back(*std::move(plan));
   }

@@ -26,7 +26,7 @@ ImageDifference compare_images(std::span<const std::uint8_t> a, std::span<const 
     either += a[i + 3] > 0 || b[i + 3] > 0;
   }
   if (pixels == 0) return difference;
-  difference.within_percent = 100.0 * static_cast<double>(within) / static_cast<double>(pixels);
+  difference.within_percent = percent_of(within, pixels);
   double mean = squares / (3.0 * static_cast<double>(pixels));
   difference.psnr = mean > 0 ? 10 * std::log10(255.0 * 255.0 / mean) : std::numeric_limits<double>::infinity();
   if (either > 0) difference.mask_iou = static_cast<double>(both) / static_cast<double>(either);

@@ -37,19 +37,21 @@ float prism_way_back(vec4 distances, vec4 change) {
   return q;
 }
 
+// What a fragment shows: where it is met, in texture space and in the world.
+struct PrismHit {
+  Ray ray;
+  Hit hit;
+  vec3 position;
+  vec3 extrusion;
+};
+
 // A shell without thickness: this fragment is the hit.
-void prism_write_flat() {
+PrismHit prism_flat_hit() {
   Ray ray = Ray(prism_point(prism_distances), vec3(0.0, 0.0, -1.0), 0.0, 1.0);
-  vec3 normal = relievo_mesostructure_normal(prism_tangent, prism_bitangent, prism_extrusion(prism_distances), ray.origin.xy);
-  gl_FragDepth = relievo_depth(prism_position);
-  relievo_write(ray, Hit(RELIEVO_HIT, 0.0, ray.origin), prism_position, normal);
+  return PrismHit(ray, Hit(RELIEVO_HIT, 0.0, ray.origin), prism_position, prism_extrusion(prism_distances));
 }
 
-void main() {
-  if (prism_exit < 0) {
-    prism_write_flat();
-    return;
-  }
+PrismHit prism_first_hit() {
   relievo_cell = prism_exit >> 1;
   vec4 change = prism_distances - prism_eye_distances;
   float back = prism_way_back(prism_distances, change);
@@ -66,13 +68,21 @@ void main() {
 
   Hit hit = Hit(RELIEVO_MISS, 0.0, ray.origin);
   if (relievo_is_valid(ray)) hit = relievo_sanitized(ray, relievo_view_trace(ray));
-  if (hit.status == RELIEVO_MISS || hit.status == RELIEVO_OUTSIDE) discard;
-
   // Starting below the surface is the wall between two heights of a seam, or rounding at a shared face: solid either way.
   float t = clamp(hit.t, 0.0, 1.0);
   vec3 position = scene_eye.xyz + (1.0 - back * (1.0 - t)) * view;
-  vec3 extrusion = prism_extrusion(entry + t * back * change);
-  vec3 normal = relievo_mesostructure_normal(prism_tangent, prism_bitangent, extrusion, hit.point.xy);
-  gl_FragDepth = relievo_depth(position);
-  relievo_write(ray, hit, position, normal);
+  return PrismHit(ray, hit, position, prism_extrusion(entry + t * back * change));
+}
+
+void main() {
+  PrismHit seen;
+  if (prism_exit < 0) {
+    seen = prism_flat_hit();
+  } else {
+    seen = prism_first_hit();
+  }
+  if (seen.hit.status == RELIEVO_MISS || seen.hit.status == RELIEVO_OUTSIDE) discard;
+  gl_FragDepth = relievo_depth(seen.position);
+  vec3 normal = relievo_mesostructure_normal(prism_tangent, prism_bitangent, seen.extrusion, seen.hit.point.xy);
+  relievo_write(seen.ray, seen.hit, seen.position, normal);
 }

@@ -10,29 +10,28 @@ layout(location = 2) in vec2 vertex_uv;
 layout(location = 3) flat in vec3 vertex_tangent;
 layout(location = 4) flat in vec3 vertex_bitangent;
 
-void surface_write(Ray ray, Hit hit, vec3 position) {
-  vec3 normal = relievo_mesostructure_normal(vertex_tangent, vertex_bitangent, vertex_extrusion, hit.point.xy);
-#if surface_depth_write == surface_depth_write_on
-  gl_FragDepth = relievo_depth(position);
-#endif
-  relievo_write(ray, hit, position, normal);
-}
-
 void main() {
   vec3 view = vertex_position - scene_eye.xyz;
   TangentFrame frame = relievo_tangent_frame(vertex_tangent, vertex_bitangent, vertex_extrusion, scene_displacement.x);
   vec2 tile = relievo_tile(vertex_uv);
   vec3 processed = vec3(vertex_uv - tile, -scene_displacement.y / scene_displacement.x);
   Ray ray;
-  if (!relievo_view_ray(frame, processed, view, ray)) {
-    ray = Ray(vec3(vertex_uv - tile, 1.0), vec3(0.0, 0.0, -1.0), 1.0, 1.0);
-    surface_write(ray, Hit(RELIEVO_HIT, 1.0, vec3(vertex_uv - tile, 0.0)), vertex_position);
-    return;
-  }
-  ray.n_dot_v = relievo_n_dot_v(frame.normal, view);
-  Hit hit = relievo_sanitized(ray, relievo_view_trace(ray));
+  Hit hit;
+  vec3 position = vertex_position;
+  if (relievo_view_ray(frame, processed, view, ray)) {
+    ray.n_dot_v = relievo_n_dot_v(frame.normal, view);
+    hit = relievo_sanitized(ray, relievo_view_trace(ray));
 #if RELIEVO_AOV != RELIEVO_AOV_STATUS && RELIEVO_AOV < RELIEVO_AOV_RAY_ORIGIN
-  if (hit.status == RELIEVO_MISS || hit.status == RELIEVO_OUTSIDE) discard;
+    if (hit.status == RELIEVO_MISS || hit.status == RELIEVO_OUTSIDE) discard;
 #endif
-  surface_write(ray, hit, vertex_position + relievo_to_world(frame, hit.point - processed));
+    position += relievo_to_world(frame, hit.point - processed);
+  } else {
+    ray = Ray(vec3(vertex_uv - tile, 1.0), vec3(0.0, 0.0, -1.0), 1.0, 1.0);
+    hit = Hit(RELIEVO_HIT, 1.0, vec3(vertex_uv - tile, 0.0));
+  }
+  vec3 normal = relievo_mesostructure_normal(vertex_tangent, vertex_bitangent, vertex_extrusion, hit.point.xy);
+#if surface_depth_write == surface_depth_write_on
+  gl_FragDepth = relievo_depth(position);
+#endif
+  relievo_write(ray, hit, position, normal);
 }

@@ -8,7 +8,7 @@ bash tests/setup.sh
 [ -f build/release/build.ninja ] || cmake --preset release >/dev/null
 cmake --build build/release --target relievo_cli
 
-# A quick look of one and a half minutes, of three where drivers compile the shaders first; `--full` given here measures
+# A quick look of a minute, of one and a half where drivers compile the shaders first; `--full` given here measures
 # everything in about a quarter of an hour. Options of `relievo report` given here come last and win. Height maps that are
 # not installed are left out.
 irrlicht=/usr/share/doc/libirrlicht-dev/media

@@ -19,6 +19,7 @@ class ReportCli : public ::testing::Test {
   void SetUp() override {
     const HeightMap map = smooth_noise_map(16, 16);
     ASSERT_TRUE(write_pfm(folder_ / "hills.pfm", Image{map.width, map.height, 1, map.texels}));
+    ASSERT_TRUE(write_pfm(folder_ / "dales.pfm", Image{map.width / 2, map.height * 2, 1, map.texels}));
     folder_.write("ground.toml",
                   "[mesh]\nkind = \"plane\"\n[image]\nwidth = 24\nheight = 24\n[height_map]\npath = \"hills.pfm\"\n");
   }
@@ -61,8 +62,9 @@ std::set<std::string> values_of(const std::vector<std::map<std::string, std::str
 
 TEST_F(ReportCli, AQuickReportHasEveryFileAndTheyParse) {
   const ChildResult result =
-      run_relievo({"report", "--quick", "--scene", path("ground.toml"), "--height", path("hills.pfm"), "--techniques",
-                   "relief,parallax", "--ray-image", "16", "--sweep-image", "8", "--repeats", "1", "-o", path("out")});
+      run_relievo({"report", "--quick", "--scene", path("ground.toml"), "--height", path("hills.pfm"), "--height",
+                   path("dales.pfm"), "--techniques", "relief,parallax", "--ray-image", "16", "--sweep-image", "8",
+                   "--repeats", "1", "-o", path("out")});
   ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
   using Names = std::set<std::string>;
   const auto json = nlohmann::json::parse(written("report.json"), nullptr, false);
@@ -80,6 +82,16 @@ TEST_F(ReportCli, AQuickReportHasEveryFileAndTheyParse) {
   EXPECT_EQ(sweep.size(), json["sweep"]["rows"].size());
   EXPECT_EQ(values_of(sweep, "technique"), (Names{"relief", "parallax"}));
   EXPECT_EQ(values_of(sweep, "backend"), Names{"vulkan"}) << "a quick one sweeps on one";
+  EXPECT_EQ(values_of(sweep, "map"), (Names{"hills", "dales"}));
+  for (const auto& row : sweep) {
+    const bool is_timed = row.at("map") == "hills" && row.at("loop").empty();
+    EXPECT_EQ(row.at("seconds").empty(), !is_timed) << row.at("map") << row.at("technique") << row.at("loop");
+  }
+  EXPECT_EQ(values_of(sweep, "filter"), (Names{"hardware", "exact"}));
+  for (const auto& row : json["rays"]) {
+    EXPECT_EQ(row["filter"], "exact");
+    EXPECT_FALSE(row.contains("seconds")) << row;
+  }
   const auto is_judged = [](const auto& picture) { return picture["technique"] != "oracle"; };
   EXPECT_EQ(pictures.size(), std::count_if(json["pictures"].begin(), json["pictures"].end(), is_judged));
   EXPECT_EQ(values_of(pictures, "scene"), Names{"ground"});

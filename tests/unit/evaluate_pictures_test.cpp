@@ -71,8 +71,7 @@ struct Drawing {
 
   Status run() {
     Progress progress("pictures", 1);
-    Status status = evaluate_pictures(input, backends, evaluation, progress);
-    return status ? evaluate_cracks(input, backends, evaluation, progress) : status;
+    return evaluate_pictures(input, backends, evaluation, progress);
   }
 
   /// All rows, as text.
@@ -118,6 +117,22 @@ TEST(EvaluatePictures, AreTheSameHoweverManyAreDrawnAtOnce) {
   EXPECT_EQ(all.evaluation.cracks.size(), 2U * 3 * 2) << "of relief and exact, in three orders";
   EXPECT_EQ(all.watched["opengl"]->most_pictures, 2U * 7) << "all again, in two rounds";
   EXPECT_EQ(each.watched["opengl"]->most_pictures, 3U) << "one technique in all random orders";
+}
+
+TEST(EvaluatePictures, OfPrismsAndOffsetsWhatIsJudgedMayBeAll) {
+  Drawing drawing;
+  drawing.input.all_pictures = false;
+  const Status drawn = drawing.run();
+  ASSERT_TRUE(drawn) << format(drawn.error());
+  std::map<std::string, std::set<std::string>> techniques;  // by stage
+  for (const PictureRow& p : drawing.evaluation.pictures) techniques[p.stage].insert(p.technique);
+  EXPECT_EQ(techniques["surface"], (std::set<std::string>{"relief", "parallax", "exact", "oracle"}));
+  EXPECT_EQ(techniques["prism"], (std::set<std::string>{"relief", "exact", "oracle"}));
+  std::set<std::string> with_offsets;
+  for (const PictureAgreement& a : drawing.evaluation.picture_agreements) {
+    if (a.offsets) with_offsets.insert(a.stage + " " + a.technique);
+  }
+  EXPECT_EQ(with_offsets, (std::set<std::string>{"surface exact", "prism exact"}));
 }
 
 TEST(EvaluatePictures, MoreRoundsThanFitInOneJobAreDrawnInSeveral) {

@@ -123,6 +123,16 @@ TEST(ReportPlot, SaysThatThereAreNoTimestamps) {
   EXPECT_EQ(plot_of(sweep).problem, "the backend has no timestamps");
 }
 
+TEST(ReportPlot, SaysThatTimesAreOfAnotherMap) {
+  Sweep sweep = two_points();
+  sweep.maps.insert(sweep.maps.begin(), "timed");
+  sweep.rows.push_back(sweep.rows.front());
+  sweep.rows.back().map = "timed";
+  for (SweepRow& row : sweep.rows) row.ratio = row.map == "timed" ? 1 : -1;
+  const Plot plot = draw_plot(sweep, sweep.maps.back(), time_against_wrong(), sweep.plan.angles);
+  EXPECT_EQ(plot.problem, "times are of the first map alone");
+}
+
 TEST(ReportPlot, StepsAgainstErrorNeedNoTimestamps) {
   Sweep sweep = two_points();
   for (SweepRow& row : sweep.rows) {

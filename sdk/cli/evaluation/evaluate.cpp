@@ -13,7 +13,7 @@ std::size_t steps_of(const EvaluationInput& input, std::size_t backends) {
   std::size_t angles = 0, drawing = 0;
   for (const RayCase& c : input.ray_cases) angles += c.angles.size();
   for (const auto& [name, stage] : input.registry->stages) drawing += stage.mesh != "none";
-  return backends * (2 * angles + input.scenes.size() * (drawing + 1));
+  return backends * (input.filters.size() * angles + input.scenes.size() * (drawing + 1));
 }
 
 }  // namespace
@@ -70,8 +70,8 @@ Result<Evaluation> evaluate(const EvaluationInput& input) {
   for (const BackendInfo& info : infos) evaluation.backends.push_back({info, own_values(*input.registry, info)});
   Progress progress("evaluate", steps_of(input, backends.size()));
   input.clock->end("starting");
-  const std::pair<const char*, decltype(&evaluate_rays)> parts[] = {
-      {"rays", evaluate_rays}, {"pictures", evaluate_pictures}, {"cracks", evaluate_cracks}};
+  const std::pair<const char*, decltype(&evaluate_rays)> parts[] = {{"rays", evaluate_rays},
+                                                                    {"pictures", evaluate_pictures}};
   for (const auto& [name, part] : parts) {
     if (Status status = part(input, backends, evaluation, progress); !status) return tl::unexpected(status.error());
     input.clock->end(name);

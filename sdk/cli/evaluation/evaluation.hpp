@@ -62,9 +62,13 @@ struct EvaluationInput {
   std::vector<std::string> techniques;
   std::vector<std::string> backends = {"vulkan", "opengl"};
   std::vector<RayCase> ray_cases;
-  std::vector<std::pair<std::string, LoadedScene>> scenes;  ///< name and parts
-  std::map<std::string, double> values;                     ///< "owner.parameter"
-  int ray_image = 1024;                                     ///< rays a case: ray_image²
+  std::vector<std::pair<std::string, LoadedScene>> scenes;                            ///< name and parts
+  std::map<std::string, double> values;                                               ///< "owner.parameter"
+  int ray_image = 1024;                                                               ///< rays a case: ray_image²
+  std::vector<HeightFilter> filters = {HeightFilter::exact, HeightFilter::hardware};  ///< of rays
+  /// Else prisms are drawn of the techniques alone that hold a silhouette, and pixel offsets measured of those that
+  /// always find the first hit: what is judged.
+  bool all_pictures = true;
   /// Timed rounds of rays. If more than 1, pictures are drawn again so often, and timed each time but the first.
   int repeats = 3;
   std::uint64_t crack_seeds = 3;  ///< random vertex orders that prisms are drawn in
@@ -170,13 +174,13 @@ using OpenBackends = std::map<std::string, std::unique_ptr<Backend>>;
 Result<OpenBackends> open_backends(const std::vector<std::string>& names, std::vector<BackendInfo>& infos,
                                    std::vector<NotRun>& not_run);
 Status evaluate_rays(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation, Progress& progress);
+/// Pictures and cracks.
 Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation,
                          Progress& progress);
-Status evaluate_cracks(const EvaluationInput& input, OpenBackends& backends, Evaluation& evaluation,
-                       Progress& progress);
 /// Whether a technique claims first hits at all: the others miss some, so their silhouettes and cracks say nothing of
 /// the stage.
 bool holds_silhouette(const Registry& registry, const std::string& technique);
+bool always_finds_first_hit(const Registry& registry, const std::string& technique);
 /// The claims, from the rows.
 void judge(const EvaluationInput& input, Evaluation& evaluation);
 

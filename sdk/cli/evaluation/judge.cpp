@@ -53,16 +53,16 @@ void check_none(const std::string& name, std::uint64_t found, std::size_t of, co
       {name, fmt::format("{} in {} cases{}", found, of, where.empty() ? "" : " (" + where + ")"), "0", found == 0});
 }
 
-bool always_finds_first_hit(const Registry& registry, const std::string& technique) {
-  auto found = registry.techniques.find(technique);
-  return found != registry.techniques.end() && found->second.first_hit == FirstHit::always;
-}
-
 }  // namespace
 
 bool holds_silhouette(const Registry& registry, const std::string& technique) {
   auto found = registry.techniques.find(technique);
   return found != registry.techniques.end() && found->second.first_hit != FirstHit::never;
+}
+
+bool always_finds_first_hit(const Registry& registry, const std::string& technique) {
+  auto found = registry.techniques.find(technique);
+  return found != registry.techniques.end() && found->second.first_hit == FirstHit::always;
 }
 
 namespace {

@@ -61,23 +61,29 @@ struct Picture {
   std::optional<Image> surface;  ///< where the reference has one
 };
 
-/// Draws the pictures of some techniques all at once.
+/// Draws the pictures of some techniques all at once, and the surface points of those whose offsets are measured.
 Result<std::vector<Picture>> draw_pictures(SceneRun& run, const std::string& stage,
                                            std::span<const std::string> techniques, bool with_surfaces) {
-  Result<std::vector<RenderResult>> drawn = draw(run, requests_of(run, stage, techniques, Aov::color));
+  std::vector<RenderRequest> requests;
+  for (const std::string& technique : techniques) {
+    requests.push_back(request_of(run, stage, technique, Aov::color));
+    const bool has_offsets = run.input.all_pictures || always_finds_first_hit(*run.input.registry, technique);
+    if (with_surfaces && has_offsets) requests.push_back(request_of(run, stage, technique, Aov::uv));
+  }
+  Result<std::vector<RenderResult>> drawn = draw(run, requests);
   if (!drawn) return tl::unexpected(drawn.error());
   std::vector<Picture> pictures;
   for (std::size_t k = 0; k < drawn->size(); ++k) {
     RenderResult& one = (*drawn)[k];
-    PictureRow row{run.scene_name,          stage, techniques[k], run.backend.info().name, "", "", "", -1, true,
+    if (requests[k].aov == Aov::uv) {
+      pictures.back().surface = std::move(one.image);
+      continue;
+    }
+    PictureRow row{run.scene_name,          stage, requests[k].technique, run.backend.info().name, "", "", "", -1, true,
                    one.degenerate_triangles};
     pictures.push_back({std::move(row), std::move(one.color), std::nullopt});
     one = {};  // pictures may be large
   }
-  if (!with_surfaces) return pictures;
-  Result<std::vector<RenderResult>> surfaces = draw(run, requests_of(run, stage, techniques, Aov::uv));
-  if (!surfaces) return tl::unexpected(surfaces.error());
-  for (std::size_t k = 0; k < pictures.size(); ++k) pictures[k].surface = std::move((*surfaces)[k].image);
   return pictures;
 }
 
@@ -125,11 +131,8 @@ Result<std::optional<Reference>> reference_for(SceneRun& run, const StageDescrip
   const std::string drawn_by = is_replayed(stage) ? stage.name : "prism";
   if (!run.input.registry->stages.contains(drawn_by) || !run.backend.info().features.contains("geometry"))
     return std::nullopt;
-  std::vector<RenderRequest> requests = requests_of(run, drawn_by, {&replayed, 1}, Aov::color);
-  if (run.first_backend) {
-    requests.push_back(requests.front());
-    requests.back().aov = Aov::uv;
-  }
+  std::vector<RenderRequest> requests = {request_of(run, drawn_by, replayed, Aov::color)};
+  if (run.first_backend) requests.push_back(request_of(run, drawn_by, replayed, Aov::uv));
   Result<std::vector<RenderResult>> drawn = draw(run, requests);
   if (!drawn) return tl::unexpected(drawn.error());
   Reference reference{replayed, std::move(drawn->front().color), std::nullopt};
@@ -148,7 +151,11 @@ Status finish_reference(SceneRun& run, const std::string& stage, const Reference
 
 /// What a stage is drawn with; nothing where it traces nothing.
 std::vector<std::string> techniques_of(const SceneRun& run, const StageDescriptor& stage) {
-  return stage.roles.empty() ? std::vector<std::string>{""} : run.input.techniques;
+  if (stage.roles.empty()) return {""};
+  std::vector<std::string> techniques = run.input.techniques;
+  if (stage.mesh == "prisms" && !run.input.all_pictures)
+    std::erase_if(techniques, [&](const std::string& name) { return !holds_silhouette(*run.input.registry, name); });
+  return techniques;
 }
 
 Status run_stage(SceneRun& run, const StageDescriptor& stage) {
@@ -168,16 +175,17 @@ Status run_stage(SceneRun& run, const StageDescriptor& stage) {
   }
   const bool with_surfaces = *reference && (*reference)->surface;
   const std::vector<std::string> techniques = techniques_of(run, stage);
-  return in_batches(std::span(techniques), pictures_at_once(run), [&](std::span<const std::string> some) -> Status {
-    Result<std::vector<Picture>> drawn = draw_pictures(run, stage.name, some, with_surfaces);
-    if (!drawn) return tl::unexpected(drawn.error());
-    return run.background.start([&run, reference, pictures = *std::move(drawn)]() mutable -> Status {
-      for (Picture& picture : pictures) {
-        if (Status status = finish_picture(run, *reference, picture); !status) return status;
-      }
-      return {};
-    });
-  });
+  return in_batches(std::span(techniques), pictures_at_once(run, with_surfaces ? 2 : 1),
+                    [&](std::span<const std::string> some) -> Status {
+                      Result<std::vector<Picture>> drawn = draw_pictures(run, stage.name, some, with_surfaces);
+                      if (!drawn) return tl::unexpected(drawn.error());
+                      return run.background.start([&run, reference, pictures = *std::move(drawn)]() mutable -> Status {
+                        for (Picture& picture : pictures) {
+                          if (Status status = finish_picture(run, *reference, picture); !status) return status;
+                        }
+                        return {};
+                      });
+                    });
 }
 
 /// Draws pictures again in rounds of one Job, to see whether they are the same, and adds what each round but the first
@@ -243,6 +251,8 @@ Status draw_scene(SceneRun& run, const Stages& stages, Progress& progress) {
     if (Status status = run_stage(run, *stage); !status) return status;
   }
   Status finished = run.background.wait();
+  progress.advance(fmt::format("cracks {} {}", run.scene_name, run.backend.info().name));
+  if (finished) finished = find_cracks(run);
   return finished && run.input.repeats > 1 && !run.input.time ? draw_again(run) : finished;
 }
 
@@ -303,6 +313,7 @@ Status evaluate_pictures(const EvaluationInput& input, OpenBackends& backends, E
     for (SceneRun& run : runs) {
       move_to(evaluation.pictures, run.evaluation.pictures);
       move_to(evaluation.picture_agreements, run.evaluation.picture_agreements);
+      move_to(evaluation.cracks, run.evaluation.cracks);
       move_to(evaluation.messages, run.evaluation.messages);
       move_to(evaluation.not_run, run.evaluation.not_run);
       compare_silhouettes(name, run.backend.info().name, run.pictures, evaluation);

@@ -178,10 +178,13 @@ Status run_case(const RayRun& run, OpenBackends& backends, Evaluation& evaluatio
 /// The case in as few runs as `most_hits_at_once` allows.
 std::vector<RayRun> split(const EvaluationInput& input, const RayCase& ray_case) {
   const std::size_t rays = static_cast<std::size_t>(input.ray_image) * static_cast<std::size_t>(input.ray_image);
-  const std::size_t a_filter = rays * input.techniques.size(), an_angle = 2 * a_filter;
+  const std::size_t an_angle = rays * input.techniques.size() * input.filters.size();
   const std::size_t angles = std::max<std::size_t>(1, most_hits_at_once / std::max<std::size_t>(1, an_angle));
-  std::vector<std::vector<HeightFilter>> filters = {{HeightFilter::exact, HeightFilter::hardware}};
-  if (an_angle > most_hits_at_once) filters = {{HeightFilter::exact}, {HeightFilter::hardware}};
+  std::vector<std::vector<HeightFilter>> filters = {input.filters};
+  if (an_angle > most_hits_at_once) {
+    filters.clear();
+    for (HeightFilter filter : input.filters) filters.push_back({filter});
+  }
   std::map<std::string, double> values = input.values;
   set_scale(*input.registry, ray_case.scale, ray_case.height, values);
   std::vector<RayRun> runs;

@@ -8,12 +8,8 @@ std::size_t pictures_at_once(const SceneRun& run, std::size_t each) {
   return std::max<std::size_t>(1, run.input.pixels_at_once / std::max<std::size_t>(1, pixels * each));
 }
 
-std::vector<RenderRequest> requests_of(const SceneRun& run, const std::string& stage,
-                                       std::span<const std::string> techniques, Aov aov) {
-  std::vector<RenderRequest> requests;
-  for (const std::string& technique : techniques)
-    requests.push_back({stage, technique, HeightFilter::exact, aov, run.input.values});
-  return requests;
+RenderRequest request_of(const SceneRun& run, const std::string& stage, const std::string& technique, Aov aov) {
+  return {stage, technique, HeightFilter::exact, aov, run.input.values};
 }
 
 Result<std::vector<RenderResult>> draw(SceneRun& run, std::span<const Mesh> meshes,

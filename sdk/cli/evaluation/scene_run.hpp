@@ -52,13 +52,15 @@ struct SceneRun {
 std::size_t pictures_at_once(const SceneRun& run, std::size_t each = 1);
 
 /// With the exact filter.
-std::vector<RenderRequest> requests_of(const SceneRun& run, const std::string& stage,
-                                       std::span<const std::string> techniques, Aov aov);
+RenderRequest request_of(const SceneRun& run, const std::string& stage, const std::string& technique, Aov aov);
 
 Result<std::vector<RenderResult>> draw(SceneRun& run, std::span<const Mesh> meshes,
                                        std::span<const RenderRequest> requests);
 /// Of the scene's own mesh.
 Result<std::vector<RenderResult>> draw(SceneRun& run, std::span<const RenderRequest> requests);
+
+/// Counts cracks between prisms, under random vertex orders, against the picture of the finely displaced mesh.
+Status find_cracks(SceneRun& run);
 
 /// Calls `work` with at most `most` of them at a time, until it fails.
 template <class T, class Work>

@@ -26,4 +26,8 @@ void mark_best(std::vector<SweepRow>& rows) {
   }
 }
 
+bool Sweep::is_timed(const std::string& map) const {
+  return std::any_of(rows.begin(), rows.end(), [&](const SweepRow& row) { return row.map == map && row.ratio > 0; });
+}
+
 }  // namespace relievo::cli

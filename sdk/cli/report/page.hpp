@@ -18,7 +18,7 @@ struct Report {
   std::vector<std::string> techniques;
   std::filesystem::path pictures;  ///< folder of Evaluation::pictures
   ValueTexts values;               ///< of --set
-  int ray_image = 0, repeats = 0;
+  int ray_image = 0, repeats = 0;  ///< of rays and pictures; 0 repeats: not timed
 };
 
 /// The whole page. Errors: "report.picture" for a picture that cannot be read back.

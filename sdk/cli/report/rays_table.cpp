@@ -10,16 +10,21 @@ namespace relievo::cli {
 
 namespace {
 
+/// Columns of times, the last.
+constexpr std::size_t times = 3;
+
 bool same_rays(const RayRow& a, const RayRow& b) {
   return a.case_name == b.case_name && a.angle == b.angle;
 }
 
-const std::vector<Column>& columns() {
-  static const std::vector<Column> list = {
+/// `timed`: with the last three.
+std::vector<Column> columns(bool timed) {
+  std::vector<Column> list = {
       {"technique"},         {"filter"},        {"backend"},     {"wrong %", true}, {"missed %", true},
       {"exhausted %", true}, {"Δuv p50", true}, {"p99", true},   {"max", true},     {"|ΔH|·10³ p50", true},
       {"p99", true},         {"max", true},     {"steps", true}, {"fetches", true}, {"ms", true},
       {"Mrays/s", true},     {"× relief", true}};
+  if (!timed) list.resize(list.size() - times);
   return list;
 }
 
@@ -27,25 +32,27 @@ double million_rays_per_second(const RayRow& row) {
   return row.seconds > 0 ? static_cast<double>(row.error.rays) / row.seconds / 1e6 : -1;
 }
 
-std::vector<Cell> cells(const Evaluation& evaluation, const RayRow& row) {
+std::vector<Cell> cells(const Evaluation& evaluation, const RayRow& row, bool timed) {
   const ErrorFigures& e = row.error;
-  return {{row.technique, "name"},
-          {row.filter},
-          {row.backend},
-          {percent_text(e.wrong_percent())},
-          {percent_text(e.percent(e.missed))},
-          {percent_text(e.percent(e.exhausted))},
-          {fixed(e.uv_texels.p50, 4)},
-          {fixed(e.uv_texels.p99, 4)},
-          {fixed(e.uv_texels.max, 4)},
-          {fixed(e.height.p50 * 1e3, 4)},
-          {fixed(e.height.p99 * 1e3, 4)},
-          {fixed(e.height.max * 1e3, 4)},
-          {fixed(e.mean_steps, 1)},
-          {fixed(e.mean_fetches, 1)},
-          {fixed(row.seconds * 1e3, 2)},
-          {fixed(million_rays_per_second(row), 2)},
-          {fixed(ratio_to_relief(evaluation, row), 2)}};
+  std::vector<Cell> list = {{row.technique, "name"},
+                            {row.filter},
+                            {row.backend},
+                            {percent_text(e.wrong_percent())},
+                            {percent_text(e.percent(e.missed))},
+                            {percent_text(e.percent(e.exhausted))},
+                            {fixed(e.uv_texels.p50, 4)},
+                            {fixed(e.uv_texels.p99, 4)},
+                            {fixed(e.uv_texels.max, 4)},
+                            {fixed(e.height.p50 * 1e3, 4)},
+                            {fixed(e.height.p99 * 1e3, 4)},
+                            {fixed(e.height.max * 1e3, 4)},
+                            {fixed(e.mean_steps, 1)},
+                            {fixed(e.mean_fetches, 1)},
+                            {fixed(row.seconds * 1e3, 2)},
+                            {fixed(million_rays_per_second(row), 2)},
+                            {fixed(ratio_to_relief(evaluation, row), 2)}};
+  if (!timed) list.resize(list.size() - times);
+  return list;
 }
 
 /// The rows of one height map at one angle, technique by technique.
@@ -57,13 +64,14 @@ std::string case_html(const Evaluation& evaluation, const RayRow& first) {
   std::stable_sort(rows.begin(), rows.end(), [](const RayRow* a, const RayRow* b) {
     return std::tie(a->technique, a->filter, a->backend) < std::tie(b->technique, b->filter, b->backend);
   });
+  const bool timed = std::any_of(rows.begin(), rows.end(), [](const RayRow* row) { return row->seconds >= 0; });
   std::vector<std::vector<Cell>> table_rows;
-  for (const RayRow* row : rows) table_rows.push_back(cells(evaluation, *row));
+  for (const RayRow* row : rows) table_rows.push_back(cells(evaluation, *row, timed));
   return fmt::format(
              "<h3>{} at {}°</h3>\n<p class=\"soft\">{} rays, of which {} pass within 10⁻⁵ of the surface without "
              "crossing it and are not judged.</p>\n",
              escape(first.case_name), first.angle, first.error.rays, first.error.ambiguous) +
-         table(columns(), table_rows);
+         table(columns(timed), table_rows);
 }
 
 }  // namespace

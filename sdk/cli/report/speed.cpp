@@ -44,10 +44,11 @@ std::string winners_html(const Sweep& sweep) {
   for (double angle : sweep.plan.angles) columns.push_back({fmt::format("{}°", angle)});
   std::vector<std::vector<Cell>> rows;
   for (const std::string& map : sweep.maps) {
+    if (!sweep.is_timed(map)) continue;
     rows.push_back({{map, "name"}});
     for (double angle : sweep.plan.angles) rows.back().push_back(winner(rows_at(sweep, map, angle)));
   }
-  return "<h3>The fastest that is never wrong</h3>\n" + table(columns, rows);
+  return rows.empty() ? "" : "<h3>The fastest that is never wrong</h3>\n" + table(columns, rows);
 }
 
 /// What no other row beats in both time and wrong hits, fastest first.
@@ -111,7 +112,8 @@ std::string plot_html(const Plot& plot) {
 
 std::string map_html(const Report& report, const std::string& map, bool open) {
   std::string html = fmt::format("<details{}><summary><b>{}</b></summary>\n", open ? " open" : "", escape(map));
-  html += defaults_html(report.sweep, map) + best_html(report.sweep, map);
+  html += defaults_html(report.sweep, map);
+  if (report.sweep.is_timed(map)) html += best_html(report.sweep, map);
   for (const Plot& plot : report.plots) {
     if (plot.map == map) html += plot_html(plot);
   }
@@ -122,8 +124,8 @@ std::string spread_html(const Sweep& sweep) {
   const Rerun& rerun = sweep.rerun;
   if (rerun.rows == 0) return {};
   return fmt::format(
-      "<p>How far to trust a time: all {} settings of the first map timed a second time, after everything else, "
-      "changed "
+      "<p>How far to trust a time: all {} rows of the first map that are timed, timed once more after everything "
+      "else, changed "
       "their ratio by {:.1f} % (median), {:.1f} % (nine of ten stay below) and {:.0f} % (worst). Errors, steps and "
       "reads "
       "do not change.</p>\n",
@@ -140,14 +142,15 @@ std::string speed_section(const Report& report) {
       "<section><h2>Speed against error</h2>\n"
       "<p>Each technique at its defaults, and with each of its loops at other counts, one at a time, with both "
       "filters: "
-      "{} rows of {} rays, on {}{}; times are medians of {} runs, interleaved. Time is a ratio to {} at its defaults "
+      "{} rows of {} rays, on {}{}; times are medians of {} runs, interleaved{}. Time is a ratio to {} at its defaults "
       "with "
       "the hardware filter, which runs before each round. Here a ray whose budget runs out counts as wrong. Plots and "
       "tables are of {}; down and to the left is better. Solid: hardware filter; dashed: exact. What is never wrong is "
       "drawn at half a ray.</p>\n",
       sweep.rows.size(), plan.image * plan.image, escape(fmt::format("{}", fmt::join(sweep.backends, " and "))),
       sweep.backends.size() > 1 && plan.maps_elsewhere < sweep.maps.size() ? ", maps made by rule on the first" : "",
-      plan.repeats, sweep.reference.empty() ? "nothing" : escape(sweep.reference), escape(sweep.backends.front()));
+      plan.repeats, plan.times_all ? "" : ", of techniques at their defaults on the first map",
+      sweep.reference.empty() ? "nothing" : escape(sweep.reference), escape(sweep.backends.front()));
   html += spread_html(sweep) + winners_html(sweep);
   bool open = true;
   for (const std::string& map : sweep.maps) {

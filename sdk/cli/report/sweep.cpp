@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 
+#include "evaluation/at_once.hpp"
 #include "relievo/trace.hpp"
 
 namespace relievo::cli {
@@ -21,6 +25,9 @@ constexpr double heat_angle = 20;  // degrees, where techniques differ most to t
 /// Hits read back at once stay below this.
 constexpr std::size_t largest_read_back = std::size_t{256} << 20;
 constexpr std::size_t bytes_a_hit = 32;
+
+/// Threads that prepare what is timed, each with a backend of its own, which holds a map's textures.
+constexpr std::size_t workers = 2;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -36,14 +43,51 @@ struct MapRun {
   std::vector<std::vector<Ray>> rays;    ///< one set an angle
   std::vector<std::vector<Hit>> truth;
   MapSet& maps;
-  bool baked = false;
 };
+
+/// What one backend finds on a map.
+struct MapSweep {
+  const MapRun& run;
+  std::vector<SweepRow> rows;  ///< rows[angle · settings + setting]
+  std::vector<HeatMap> heat = {};
+};
+
+std::span<MapSweep> timed_maps(std::span<MapSweep> maps, const SweepPlan& plan) {
+  return plan.times_all ? maps : maps.first(std::min<std::size_t>(maps.size(), 1));
+}
 
 TraceRequest request_of(const MapRun& run, const BackendInfo& backend, const Setting& setting, bool count_cost) {
   TraceRequest request{setting.technique, setting.filter, count_cost,
                        values_on(*run.input.registry, backend, run.values)};
   if (!setting.loop.empty()) request.values[setting.technique + "." + setting.loop] = setting.count;
   return request;
+}
+
+bool is_timed(const SweepPlan& plan, const Setting& setting) {
+  return plan.times_all || setting.loop.empty();
+}
+
+/// The reference first, if there is one, then every timed setting.
+std::vector<TraceRequest> timed_requests(const MapRun& run, const BackendInfo& backend, bool has_reference) {
+  std::vector<TraceRequest> requests;
+  if (has_reference) {
+    std::map<std::string, double> values;
+    set_scale(*run.input.registry, run.ray_case.scale, run.ray_case.height, values);
+    requests.push_back({reference_technique, HeightFilter::hardware, false,
+                        values_on(*run.input.registry, backend, std::move(values))});
+  }
+  for (const Setting& setting : run.settings) {
+    if (is_timed(run.plan, setting)) requests.push_back(request_of(run, backend, setting, false));
+  }
+  return requests;
+}
+
+Result<JobResult> trace_all(const MapRun& run, Backend& backend, std::span<const std::vector<Ray>> rays,
+                            std::span<const TraceRequest> requests, TraceRounds rounds, bool count_cost) {
+  Result<Job> job =
+      make_trace_job(*run.input.registry, run.maps, rays, requests, backend.info().shader_target, rounds, count_cost);
+  if (!job) return tl::unexpected(job.error());
+  return backend.execute(*job);
 }
 
 /// Bakes `name` and first what it is baked from, each timed apart.
@@ -64,7 +108,6 @@ Status bake_timed(Backend& backend, MapRun& run, const std::string& name, std::v
 
 Status bake_all(Backend& backend, MapRun& run, std::vector<MapCost>& costs) {
   const HeightMap& height = run.ray_case.height;
-  run.baked = true;
   costs.push_back(
       {run.ray_case.name, "height", height.width, height.height, texture_bytes(run.maps.find("height")->second), -1});
   for (const std::string& technique : run.input.techniques) {
@@ -95,15 +138,12 @@ bool shown_as_heat(const MapRun& run, const Setting& setting, const Sweep& sweep
          setting.filter == HeightFilter::exact && sweep.backends.size() == 1;
 }
 
-/// Hits, steps and fetches of the settings [first, last): rows[angle · settings + setting].
-Status count_some(MapRun& run, Backend& backend, std::size_t first, std::size_t last, std::vector<SweepRow>& rows,
-                  Sweep& sweep) {
+/// Hits, steps and fetches of the settings [first, last).
+Status count_some(Backend& backend, std::size_t first, std::size_t last, const Sweep& sweep, MapSweep& map) {
+  const MapRun& run = map.run;
   std::vector<TraceRequest> requests;
   for (std::size_t k = first; k < last; ++k) requests.push_back(request_of(run, backend.info(), run.settings[k], true));
-  Result<Job> job =
-      make_trace_job(*run.input.registry, run.maps, run.rays, requests, backend.info().shader_target, {}, true);
-  if (!job) return tl::unexpected(job.error());
-  Result<JobResult> result = backend.execute(*job);
+  Result<JobResult> result = trace_all(run, backend, run.rays, requests, {}, true);
   if (!result) return tl::unexpected(result.error());
   const HeightMap& height = run.ray_case.height;
   for (std::size_t s = 0; s < run.rays.size(); ++s) {
@@ -111,44 +151,90 @@ Status count_some(MapRun& run, Backend& backend, std::size_t first, std::size_t 
       std::vector<std::byte>& bytes = result->read_backs[s * requests.size() + k - first];
       std::vector<Hit> hits = read_hits(bytes, run.rays[s]);
       bytes = {};
-      SweepRow& row = rows[s * run.settings.size() + k];
+      SweepRow& row = map.rows[s * run.settings.size() + k];
       row.error = compare_hits(run.truth[s], hits, height.width, height.height);
       if (shown_as_heat(run, run.settings[k], sweep, row.angle))
-        sweep.heat.push_back(heat_map(run, run.settings[k], run.truth[s], hits));
+        map.heat.push_back(heat_map(run, run.settings[k], run.truth[s], hits));
     }
   }
   return {};
 }
 
-/// Times of every row, and of the reference before each round over an angle's settings.
-Status time_all(MapRun& run, Backend& backend, bool has_reference, std::vector<SweepRow>& rows) {
-  std::vector<TraceRequest> requests;
-  if (has_reference) {
-    std::map<std::string, double> values;
-    set_scale(*run.input.registry, run.ray_case.scale, run.ray_case.height, values);
-    requests.push_back({reference_technique, HeightFilter::hardware, false,
-                        values_on(*run.input.registry, backend.info(), std::move(values))});
+Status count_map(Backend& backend, const Sweep& sweep, MapSweep& map) {
+  const MapRun& run = map.run;
+  const std::size_t a_setting = run.rays.size() * run.rays.front().size() * bytes_a_hit;
+  const std::size_t at_once = std::max<std::size_t>(1, largest_read_back / a_setting);
+  for (std::size_t first = 0; first < run.settings.size(); first += at_once) {
+    const std::size_t last = std::min(first + at_once, run.settings.size());
+    if (Status status = count_some(backend, first, last, sweep, map); !status) return status;
   }
-  for (const Setting& setting : run.settings) requests.push_back(request_of(run, backend.info(), setting, false));
+  return {};
+}
+
+/// One ray with some of the programs that are timed later, alone on the machine: drivers keep what they compile.
+Status compile_ahead(const MapRun& run, Backend& backend, std::span<const TraceRequest> requests) {
+  const std::vector<Ray> one_ray = {run.rays.front().front()};
+  Result<JobResult> result = trace_all(run, backend, {&one_ray, 1}, requests, {}, false);
+  if (!result) return tl::unexpected(result.error());
+  return {};
+}
+
+/// Whatever need not be timed, in pieces, some at once: drivers compile on one thread each.
+Status prepare(const BackendInfo& info, const Sweep& sweep, std::span<MapSweep> maps, Progress& progress) {
+  std::vector<std::function<Status(Backend&)>> pieces;
+  for (MapSweep& map : maps) {
+    pieces.emplace_back([&](Backend& backend) {
+      progress.advance(fmt::format("counting {} on {}", map.run.ray_case.name, info.name));
+      return count_map(backend, sweep, map);
+    });
+  }
+  for (const MapSweep& map : timed_maps(maps, sweep.plan)) {
+    const auto requests =
+        std::make_shared<const std::vector<TraceRequest>>(timed_requests(map.run, info, !sweep.reference.empty()));
+    for (std::size_t part = 0; part < workers; ++part) {
+      const std::size_t first = requests->size() * part / workers, last = requests->size() * (part + 1) / workers;
+      if (first == last) continue;
+      pieces.emplace_back([&map, requests, first, last](Backend& backend) {
+        return compile_ahead(map.run, backend, std::span(*requests).subspan(first, last - first));
+      });
+    }
+  }
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::size_t> threads(std::min(workers, pieces.size()));
+  return for_each_at_once(threads, [&](std::size_t) -> Status {
+    Result<std::unique_ptr<Backend>> backend = open(info.name, false);
+    if (!backend) return tl::unexpected(backend.error());
+    for (std::size_t i = next++; i < pieces.size(); i = next++) {
+      if (Status status = pieces[i](**backend); !status) return status;
+    }
+    return {};
+  });
+}
+
+/// Times of every row, and of the reference before each round over an angle's settings.
+Status time_all(const MapRun& run, Backend& backend, bool has_reference, std::vector<SweepRow>& rows) {
+  const std::vector<TraceRequest> requests = timed_requests(run, backend.info(), has_reference);
   const TraceRounds rounds{run.plan.repeats, true};
-  Result<Job> job =
-      make_trace_job(*run.input.registry, run.maps, run.rays, requests, backend.info().shader_target, rounds, false);
-  if (!job) return tl::unexpected(job.error());
-  Result<JobResult> result = backend.execute(*job);
+  Result<JobResult> result = trace_all(run, backend, run.rays, requests, rounds, false);
   if (!result) return tl::unexpected(result.error());
   if (result->command_seconds.empty()) return {};  // no timestamps
   const std::vector<std::vector<double>> seconds = trace_seconds(*result, run.rays.size(), requests.size(), rounds);
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const std::size_t first = r / run.settings.size() * requests.size();  // of the row's angle: the reference, if any
-    const std::vector<double>& times = seconds[first + (has_reference ? 1 : 0) + r % run.settings.size()];
+  std::vector<SweepRow*> timed;  // of every angle, in the order of the requests
+  for (SweepRow& row : rows) {
+    if (is_timed(run.plan, row.setting)) timed.push_back(&row);
+  }
+  const std::size_t skipped = has_reference ? 1 : 0, settings = requests.size() - skipped;
+  for (std::size_t r = 0; r < timed.size(); ++r) {
+    const std::size_t first = r / settings * requests.size();  // of the row's angle: the reference, if any
+    const std::vector<double>& times = seconds[first + skipped + r % settings];
     std::vector<double> ratios;
     for (std::size_t k = 0; has_reference && k < times.size(); ++k) {
       if (seconds[first][k] > 0) ratios.push_back(times[k] / seconds[first][k]);
     }
     auto [fastest, slowest] = std::minmax_element(times.begin(), times.end());
-    rows[r].seconds = median(times);
-    rows[r].spread = rows[r].seconds > 0 && times.size() > 1 ? (*slowest - *fastest) / rows[r].seconds : -1;
-    rows[r].ratio = median(ratios);
+    timed[r]->seconds = median(times);
+    timed[r]->spread = timed[r]->seconds > 0 && times.size() > 1 ? (*slowest - *fastest) / timed[r]->seconds : -1;
+    timed[r]->ratio = median(ratios);
   }
   return {};
 }
@@ -160,21 +246,25 @@ std::vector<SweepRow> empty_rows(const MapRun& run, const std::string& backend) 
   return rows;
 }
 
-Status sweep_map(MapRun& run, Backend& backend, Sweep& sweep) {
-  std::vector<SweepRow> rows = empty_rows(run, backend.info().name);
-  std::size_t a_setting = run.rays.size() * run.rays.front().size() * bytes_a_hit;
-  std::size_t at_once = std::max<std::size_t>(1, largest_read_back / a_setting);
-  for (std::size_t first = 0; first < run.settings.size(); first += at_once) {
-    std::size_t last = std::min(first + at_once, run.settings.size());
-    if (Status status = count_some(run, backend, first, last, rows, sweep); !status) return status;
+/// Counts, then times some maps on a backend.
+Status sweep_maps(std::span<const MapRun> runs, Backend& backend, Sweep& sweep, Progress& progress) {
+  const std::string& name = sweep.backends.back();
+  std::vector<MapSweep> maps;
+  for (const MapRun& run : runs) maps.push_back({run, empty_rows(run, name)});
+  if (Status status = prepare(backend.info(), sweep, maps, progress); !status) return status;
+  for (MapSweep& map : timed_maps(maps, sweep.plan)) {
+    progress.advance(fmt::format("timing {} on {}", map.run.ray_case.name, name));
+    if (Status status = time_all(map.run, backend, !sweep.reference.empty(), map.rows); !status) return status;
   }
-  if (Status status = time_all(run, backend, !sweep.reference.empty(), rows); !status) return status;
-  sweep.rows.insert(sweep.rows.end(), rows.begin(), rows.end());
+  for (MapSweep& map : maps) {
+    move_to(sweep.rows, map.rows);
+    move_to(sweep.heat, map.heat);
+  }
   return {};
 }
 
 /// Times the first map of the first backend again.
-Status time_again(MapRun& run, Backend& backend, Sweep& sweep) {
+Status time_again(const MapRun& run, Backend& backend, Sweep& sweep) {
   std::vector<SweepRow> rows = empty_rows(run, backend.info().name);
   if (Status status = time_all(run, backend, !sweep.reference.empty(), rows); !status) return status;
   std::vector<double> changes;
@@ -205,7 +295,7 @@ MapRun make_run(const EvaluationInput& input, const SweepPlan& plan, const RayCa
 /// Every backend over the maps; the maps that techniques read are baked once, by the first backend.
 Status sweep_backends(const EvaluationInput& input, const std::vector<Setting>& settings, Sweep& sweep) {
   const std::size_t elsewhere = std::min(sweep.plan.maps_elsewhere, sweep.maps.size());
-  Progress progress("sweep", sweep.maps.size() + 1 + elsewhere * (input.backends.size() - 1));
+  Progress progress("sweep", 3 * sweep.maps.size() + 1 + 2 * elsewhere * (input.backends.size() - 1));
   std::vector<MapRun> runs;
   for (const RayCase& ray_case : input.ray_cases) runs.push_back(make_run(input, sweep.plan, ray_case, settings));
   input.clock->end("oracle's rays");
@@ -218,16 +308,16 @@ Status sweep_backends(const EvaluationInput& input, const std::vector<Setting>& 
     }
     if (!backend) return tl::unexpected(backend.error());
     sweep.backends.push_back(name);
-    for (MapRun& run : std::span(runs).first(sweep.backends.size() > 1 ? elsewhere : runs.size())) {
-      progress.advance(fmt::format("{} on {}", run.ray_case.name, name));
-      if (!run.baked) {
-        if (Status status = bake_all(**backend, run, sweep.costs); !status) return status;
-        input.clock->end("baking");
-      }
-      if (Status status = sweep_map(run, **backend, sweep); !status) return status;
-      input.clock->end("sweep");
+    const bool first_backend = sweep.backends.size() == 1;
+    for (std::size_t i = 0; first_backend && i < runs.size(); ++i) {
+      progress.advance(fmt::format("baking for {} on {}", runs[i].ray_case.name, name));
+      if (Status status = bake_all(**backend, runs[i], sweep.costs); !status) return status;
     }
-    if (sweep.backends.size() > 1) continue;
+    if (first_backend) input.clock->end("baking");
+    const std::span<const MapRun> swept = std::span(runs).first(first_backend ? runs.size() : elsewhere);
+    if (Status status = sweep_maps(swept, **backend, sweep, progress); !status) return status;
+    input.clock->end("sweep");
+    if (!first_backend) continue;
     progress.advance("rerun on " + name);
     if (Status status = time_again(runs.front(), **backend, sweep); !status) return status;
     input.clock->end("sweep, again");

@@ -60,6 +60,7 @@ struct SweepPlan {
   std::vector<int> budgets = {16, 64, 256};            ///< of a loop that is only a bound
   int image = 128;                                     ///< rays: image²
   int repeats = 3;
+  bool times_all = true;           ///< else only the first map is timed, with techniques at their own counts
   std::size_t maps_elsewhere = 0;  ///< of the maps, how many backends after the first sweep
 };
 
@@ -75,6 +76,9 @@ struct Sweep {
   Rerun rerun;
   std::vector<NotRun> not_run;
   double seconds = 0;  ///< wall time of it all
+
+  /// Whether there are times on a map.
+  bool is_timed(const std::string& map) const;
 };
 
 /// All settings of the techniques of `input`, technique by technique. A loop whose default is in the hundreds is a

@@ -1,4 +1,5 @@
 /// Cracks between prisms: pictures under random vertex orders against the finely displaced mesh.
+#include <fmt/format.h>
 #include <span>
 
 #include "evaluation/scene_run.hpp"
@@ -11,7 +12,12 @@ Status find_cracks(SceneRun& run) {
   const auto displaced = run.pictures.find({"vertex", ""});
   const bool draws_prisms =
       run.input.registry->stages.contains("prism") && run.backend.info().features.contains("geometry");
-  if (!draws_prisms || displaced == run.pictures.end()) return {};
+  if (!draws_prisms) return {};
+  if (displaced == run.pictures.end()) {
+    run.evaluation.not_run.push_back({fmt::format("cracks of scene {} on {}", run.scene_name, run.backend.info().name),
+                                      "there is no picture of the finely displaced mesh"});
+    return {};
+  }
   std::vector<std::string> techniques = run.input.techniques;
   std::erase_if(techniques, [&](const std::string& name) { return !holds_silhouette(*run.input.registry, name); });
   std::vector<Mesh> shuffled;

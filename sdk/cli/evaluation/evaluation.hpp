@@ -67,7 +67,7 @@ struct EvaluationInput {
   int ray_image = 1024;                                                               ///< rays a case: ray_image²
   std::vector<HeightFilter> filters = {HeightFilter::exact, HeightFilter::hardware};  ///< of rays
   /// Else prisms are drawn of the techniques alone that hold a silhouette, and pixel offsets measured of those that
-  /// always find the first hit: what is judged.
+  /// always find the first hit.
   bool all_pictures = true;
   /// Timed rounds of rays. If more than 1, pictures are drawn again so often, and timed each time but the first.
   int repeats = 3;

@@ -1,4 +1,4 @@
-/// The non-dominated set: what is worth its time.
+/// What is timed, and the non-dominated set: what is worth its time.
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -27,7 +27,9 @@ void mark_best(std::vector<SweepRow>& rows) {
 }
 
 bool Sweep::is_timed(const std::string& map) const {
-  return std::any_of(rows.begin(), rows.end(), [&](const SweepRow& row) { return row.map == map && row.ratio > 0; });
+  return std::any_of(rows.begin(), rows.end(), [&](const SweepRow& row) {
+    return row.map == map && row.backend == backends.front() && row.ratio > 0;
+  });
 }
 
 }  // namespace relievo::cli

@@ -64,7 +64,7 @@ std::string introduction(const Report& report) {
       "beside the steps and texel reads that it took; the milliseconds are this machine's.{}</p>\n"
       "<p class=\"verdict {}\">{}</p>\n",
       escape(fmt::format("{}", fmt::join(report.techniques, ", "))), report.ray_image * report.ray_image,
-      report.repeats == 0   ? "timed in the sweep alone"
+      report.repeats == 0   ? (report.sweep.rows.empty() ? "not timed" : "timed in the sweep alone")
       : report.repeats == 1 ? "timed once"
                             : fmt::format("the median of {} runs", report.repeats),
       report.values.empty() ? "" : escape(fmt::format(" Set otherwise than described: {}.", to_text(report.values))),

@@ -186,9 +186,9 @@ Plot draw_plot(const Sweep& sweep, const std::string& map, const PlotKind& kind,
   Plot plot{map, &kind, "", ""};
   std::string script = plot_script(sweep, map, kind, angles);
   if (script.empty()) {
-    plot.problem = sweep.is_timed(map)                  ? "no setting has a hit that is right"
-                   : sweep.is_timed(sweep.maps.front()) ? "times are of the first map alone"
-                                                        : "the backend has no timestamps";
+    plot.problem = kind.x != time_of || sweep.is_timed(map) ? "no setting has anything to show"
+                   : sweep.is_timed(sweep.maps.front())     ? "times are of the first map alone"
+                                                            : "the backend has no timestamps";
     return plot;
   }
   Drawing drawing = run_gnuplot(script, identifier(sweep, map, kind));

@@ -12,7 +12,7 @@ namespace {
 
 using Rows = std::vector<const SweepRow*>;
 
-/// The timed rows of a map at an angle on the first backend.
+/// The rows of a map at an angle on the first backend.
 Rows rows_at(const Sweep& sweep, const std::string& map, double angle) {
   Rows rows;
   for (const SweepRow& row : sweep.rows) {
@@ -124,12 +124,10 @@ std::string spread_html(const Sweep& sweep) {
   const Rerun& rerun = sweep.rerun;
   if (rerun.rows == 0) return {};
   return fmt::format(
-      "<p>How far to trust a time: all {} rows of the first map that are timed, timed once more after everything "
-      "else, changed "
-      "their ratio by {:.1f} % (median), {:.1f} % (nine of ten stay below) and {:.0f} % (worst). Errors, steps and "
-      "reads "
-      "do not change.</p>\n",
-      rerun.rows, rerun.median * 100, rerun.p90 * 100, rerun.worst * 100);
+      "<p>How far to trust a time: the {} timed settings of the first map at {}°, timed once more after everything "
+      "else, changed their ratio by {:.1f} % (median), {:.1f} % (nine of ten stay below) and {:.0f} % (worst). Errors, "
+      "steps and reads do not change.</p>\n",
+      rerun.rows, sweep.plan.angles.front(), rerun.median * 100, rerun.p90 * 100, rerun.worst * 100);
 }
 
 }  // namespace
@@ -142,14 +140,16 @@ std::string speed_section(const Report& report) {
       "<section><h2>Speed against error</h2>\n"
       "<p>Each technique at its defaults, and with each of its loops at other counts, one at a time, with both "
       "filters: "
-      "{} rows of {} rays, on {}{}; times are medians of {} runs, interleaved{}. Time is a ratio to {} at its defaults "
+      "{} rows of {} rays, on {}{}; times are medians of {} runs over {} rays, interleaved{}. Time is a ratio to {} at "
+      "its defaults "
       "with "
       "the hardware filter, which runs before each round. Here a ray whose budget runs out counts as wrong. Plots and "
       "tables are of {}; down and to the left is better. Solid: hardware filter; dashed: exact. What is never wrong is "
       "drawn at half a ray.</p>\n",
       sweep.rows.size(), plan.image * plan.image, escape(fmt::format("{}", fmt::join(sweep.backends, " and "))),
       sweep.backends.size() > 1 && plan.maps_elsewhere < sweep.maps.size() ? ", maps made by rule on the first" : "",
-      plan.repeats, plan.times_all ? "" : ", of techniques at their defaults on the first map",
+      plan.repeats, plan.timed_image * plan.timed_image,
+      plan.times_all ? "" : ", of techniques at their defaults on the first map",
       sweep.reference.empty() ? "nothing" : escape(sweep.reference), escape(sweep.backends.front()));
   html += spread_html(sweep) + winners_html(sweep);
   bool open = true;

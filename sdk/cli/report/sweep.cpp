@@ -8,7 +8,6 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <span>
 
 #include "evaluation/at_once.hpp"
@@ -22,11 +21,11 @@ namespace {
 constexpr const char* reference_technique = "relief";
 constexpr double heat_angle = 20;  // degrees, where techniques differ most to the eye
 
-/// Hits read back at once stay below this.
+/// Hits read back at once, by all workers, stay below this, or are those of one setting each.
 constexpr std::size_t largest_read_back = std::size_t{256} << 20;
 constexpr std::size_t bytes_a_hit = 32;
 
-/// Threads that prepare what is timed, each with a backend of its own, which holds a map's textures.
+/// Threads that prepare what is timed, each with a backend and copies of a map's textures.
 constexpr std::size_t workers = 2;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -56,6 +55,15 @@ std::span<MapSweep> timed_maps(std::span<MapSweep> maps, const SweepPlan& plan) 
   return plan.times_all ? maps : maps.first(std::min<std::size_t>(maps.size(), 1));
 }
 
+using Angles = std::span<const double>;
+
+/// One set an angle, image² rays each.
+std::vector<std::vector<Ray>> rays_of(const RayCase& ray_case, Angles angles, int image) {
+  std::vector<std::vector<Ray>> sets;
+  for (double angle : angles) sets.push_back(make_view_rays(angle, ray_case.scale, image, image));
+  return sets;
+}
+
 TraceRequest request_of(const MapRun& run, const BackendInfo& backend, const Setting& setting, bool count_cost) {
   TraceRequest request{setting.technique, setting.filter, count_cost,
                        values_on(*run.input.registry, backend, run.values)};
@@ -63,7 +71,7 @@ TraceRequest request_of(const MapRun& run, const BackendInfo& backend, const Set
   return request;
 }
 
-bool is_timed(const SweepPlan& plan, const Setting& setting) {
+bool wants_time(const SweepPlan& plan, const Setting& setting) {
   return plan.times_all || setting.loop.empty();
 }
 
@@ -77,7 +85,7 @@ std::vector<TraceRequest> timed_requests(const MapRun& run, const BackendInfo& b
                         values_on(*run.input.registry, backend, std::move(values))});
   }
   for (const Setting& setting : run.settings) {
-    if (is_timed(run.plan, setting)) requests.push_back(request_of(run, backend, setting, false));
+    if (wants_time(run.plan, setting)) requests.push_back(request_of(run, backend, setting, false));
   }
   return requests;
 }
@@ -163,7 +171,7 @@ Status count_some(Backend& backend, std::size_t first, std::size_t last, const S
 Status count_map(Backend& backend, const Sweep& sweep, MapSweep& map) {
   const MapRun& run = map.run;
   const std::size_t a_setting = run.rays.size() * run.rays.front().size() * bytes_a_hit;
-  const std::size_t at_once = std::max<std::size_t>(1, largest_read_back / a_setting);
+  const std::size_t at_once = std::max<std::size_t>(1, largest_read_back / workers / a_setting);
   for (std::size_t first = 0; first < run.settings.size(); first += at_once) {
     const std::size_t last = std::min(first + at_once, run.settings.size());
     if (Status status = count_some(backend, first, last, sweep, map); !status) return status;
@@ -179,49 +187,65 @@ Status compile_ahead(const MapRun& run, Backend& backend, std::span<const TraceR
   return {};
 }
 
-/// Whatever need not be timed, in pieces, some at once: drivers compile on one thread each.
-Status prepare(const BackendInfo& info, const Sweep& sweep, std::span<MapSweep> maps, Progress& progress) {
-  std::vector<std::function<Status(Backend&)>> pieces;
-  for (MapSweep& map : maps) {
-    pieces.emplace_back([&](Backend& backend) {
-      progress.advance(fmt::format("counting {} on {}", map.run.ray_case.name, info.name));
-      return count_map(backend, sweep, map);
-    });
-  }
-  for (const MapSweep& map : timed_maps(maps, sweep.plan)) {
-    const auto requests =
-        std::make_shared<const std::vector<TraceRequest>>(timed_requests(map.run, info, !sweep.reference.empty()));
-    for (std::size_t part = 0; part < workers; ++part) {
-      const std::size_t first = requests->size() * part / workers, last = requests->size() * (part + 1) / workers;
-      if (first == last) continue;
-      pieces.emplace_back([&map, requests, first, last](Backend& backend) {
-        return compile_ahead(map.run, backend, std::span(*requests).subspan(first, last - first));
-      });
-    }
-  }
+using Work = std::function<Status(Backend&)>;
+
+/// On the backend, and beside it on others of its kind, as far as they can be opened: drivers compile on one thread
+/// each.
+Status work_at_once(Backend& backend, std::span<const Work> pieces) {
   std::atomic<std::size_t> next = 0;
-  std::vector<std::size_t> threads(std::min(workers, pieces.size()));
-  return for_each_at_once(threads, [&](std::size_t) -> Status {
-    Result<std::unique_ptr<Backend>> backend = open(info.name, false);
-    if (!backend) return tl::unexpected(backend.error());
+  const auto work = [&](Backend& one) -> Status {
     for (std::size_t i = next++; i < pieces.size(); i = next++) {
-      if (Status status = pieces[i](**backend); !status) return status;
+      Status status = pieces[i](one);
+      if (status) continue;
+      next = pieces.size();
+      return status;
     }
     return {};
+  };
+  std::vector<Backend*> backends(std::min(workers, pieces.size()));
+  if (!backends.empty()) backends.front() = &backend;
+  return for_each_at_once(backends, [&](Backend* one) -> Status {
+    if (one) return work(*one);
+    Result<std::unique_ptr<Backend>> other = open(backend.info().name, false);
+    return other ? work(**other) : Status();
   });
 }
 
-/// Times of every row, and of the reference before each round over an angle's settings.
-Status time_all(const MapRun& run, Backend& backend, bool has_reference, std::vector<SweepRow>& rows) {
+/// Whatever need not be timed.
+Status prepare(Backend& backend, const Sweep& sweep, std::span<MapSweep> maps, Progress& progress) {
+  std::vector<Work> pieces;
+  for (MapSweep& map : maps) {
+    pieces.emplace_back([&](Backend& one) {
+      progress.advance(fmt::format("counting {} on {}", map.run.ray_case.name, one.info().name));
+      return count_map(one, sweep, map);
+    });
+  }
+  for (const MapSweep& map : timed_maps(maps, sweep.plan)) {
+    const auto requests = std::make_shared<const std::vector<TraceRequest>>(
+        timed_requests(map.run, backend.info(), !sweep.reference.empty()));
+    for (std::size_t part = 0; part < workers; ++part) {
+      const std::size_t first = requests->size() * part / workers, last = requests->size() * (part + 1) / workers;
+      if (first == last) continue;
+      pieces.emplace_back([&map, requests, first, last](Backend& one) {
+        return compile_ahead(map.run, one, std::span(*requests).subspan(first, last - first));
+      });
+    }
+  }
+  return work_at_once(backend, pieces);
+}
+
+/// Times of the rows that want them, and of the reference before each round over an angle's settings.
+Status time_all(const MapRun& run, Angles angles, Backend& backend, bool has_reference, std::vector<SweepRow>& rows) {
   const std::vector<TraceRequest> requests = timed_requests(run, backend.info(), has_reference);
   const TraceRounds rounds{run.plan.repeats, true};
-  Result<JobResult> result = trace_all(run, backend, run.rays, requests, rounds, false);
+  const std::vector<std::vector<Ray>> rays = rays_of(run.ray_case, angles, run.plan.timed_image);
+  Result<JobResult> result = trace_all(run, backend, rays, requests, rounds, false);
   if (!result) return tl::unexpected(result.error());
   if (result->command_seconds.empty()) return {};  // no timestamps
-  const std::vector<std::vector<double>> seconds = trace_seconds(*result, run.rays.size(), requests.size(), rounds);
+  const std::vector<std::vector<double>> seconds = trace_seconds(*result, rays.size(), requests.size(), rounds);
   std::vector<SweepRow*> timed;  // of every angle, in the order of the requests
   for (SweepRow& row : rows) {
-    if (is_timed(run.plan, row.setting)) timed.push_back(&row);
+    if (wants_time(run.plan, row.setting)) timed.push_back(&row);
   }
   const std::size_t skipped = has_reference ? 1 : 0, settings = requests.size() - skipped;
   for (std::size_t r = 0; r < timed.size(); ++r) {
@@ -239,9 +263,9 @@ Status time_all(const MapRun& run, Backend& backend, bool has_reference, std::ve
   return {};
 }
 
-std::vector<SweepRow> empty_rows(const MapRun& run, const std::string& backend) {
+std::vector<SweepRow> empty_rows(const MapRun& run, Angles angles, const std::string& backend) {
   std::vector<SweepRow> rows;
-  for (double angle : run.plan.angles)
+  for (double angle : angles)
     for (const Setting& setting : run.settings) rows.push_back({run.ray_case.name, backend, angle, setting, {}});
   return rows;
 }
@@ -250,11 +274,12 @@ std::vector<SweepRow> empty_rows(const MapRun& run, const std::string& backend) 
 Status sweep_maps(std::span<const MapRun> runs, Backend& backend, Sweep& sweep, Progress& progress) {
   const std::string& name = sweep.backends.back();
   std::vector<MapSweep> maps;
-  for (const MapRun& run : runs) maps.push_back({run, empty_rows(run, name)});
-  if (Status status = prepare(backend.info(), sweep, maps, progress); !status) return status;
+  for (const MapRun& run : runs) maps.push_back({run, empty_rows(run, run.plan.angles, name)});
+  if (Status status = prepare(backend, sweep, maps, progress); !status) return status;
   for (MapSweep& map : timed_maps(maps, sweep.plan)) {
     progress.advance(fmt::format("timing {} on {}", map.run.ray_case.name, name));
-    if (Status status = time_all(map.run, backend, !sweep.reference.empty(), map.rows); !status) return status;
+    Status status = time_all(map.run, map.run.plan.angles, backend, !sweep.reference.empty(), map.rows);
+    if (!status) return status;
   }
   for (MapSweep& map : maps) {
     move_to(sweep.rows, map.rows);
@@ -263,10 +288,11 @@ Status sweep_maps(std::span<const MapRun> runs, Backend& backend, Sweep& sweep, 
   return {};
 }
 
-/// Times the first map of the first backend again.
+/// Times the first map at the first angle on the first backend again.
 Status time_again(const MapRun& run, Backend& backend, Sweep& sweep) {
-  std::vector<SweepRow> rows = empty_rows(run, backend.info().name);
-  if (Status status = time_all(run, backend, !sweep.reference.empty(), rows); !status) return status;
+  const Angles angle = Angles(run.plan.angles).first(1);
+  std::vector<SweepRow> rows = empty_rows(run, angle, backend.info().name);
+  if (Status status = time_all(run, angle, backend, !sweep.reference.empty(), rows); !status) return status;
   std::vector<double> changes;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     double first = sweep.rows[r].ratio, second = rows[r].ratio;
@@ -283,19 +309,17 @@ MapRun make_run(const EvaluationInput& input, const SweepPlan& plan, const RayCa
   std::map<std::string, double> values = input.values;
   set_scale(*input.registry, ray_case.scale, ray_case.height, values);
   MapSet& maps = input.baked->of(*input.registry, ray_case.height, "sweep", values);
-  MapRun run{input, plan, ray_case, settings, std::move(values), {}, {}, maps};
+  MapRun run{input, plan, ray_case, settings, std::move(values), rays_of(ray_case, plan.angles, plan.image), {}, maps};
   Oracle oracle(ray_case.height);
-  for (double angle : plan.angles) {
-    run.rays.push_back(make_view_rays(angle, ray_case.scale, plan.image, plan.image));
-    run.truth.push_back(oracle.trace(run.rays.back()));
-  }
+  for (const std::vector<Ray>& rays : run.rays) run.truth.push_back(oracle.trace(rays));
   return run;
 }
 
 /// Every backend over the maps; the maps that techniques read are baked once, by the first backend.
 Status sweep_backends(const EvaluationInput& input, const std::vector<Setting>& settings, Sweep& sweep) {
   const std::size_t elsewhere = std::min(sweep.plan.maps_elsewhere, sweep.maps.size());
-  Progress progress("sweep", 3 * sweep.maps.size() + 1 + 2 * elsewhere * (input.backends.size() - 1));
+  Progress progress("sweep", 2 * sweep.maps.size() + (sweep.plan.times_all ? sweep.maps.size() : 1) + 1 +
+                                 2 * elsewhere * (input.backends.size() - 1));
   std::vector<MapRun> runs;
   for (const RayCase& ray_case : input.ray_cases) runs.push_back(make_run(input, sweep.plan, ray_case, settings));
   input.clock->end("oracle's rays");

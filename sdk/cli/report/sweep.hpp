@@ -23,7 +23,7 @@ struct SweepRow {
   double angle = 0;  ///< degrees above the base plane
   Setting setting;
   ErrorFigures error;
-  double seconds = -1;  ///< median of the repeats; −1 without timestamps
+  double seconds = -1;  ///< median of the repeats; −1: not timed
   double spread = -1;   ///< (slowest − fastest) / median of the repeats
   double ratio = -1;    ///< median over the repeats of the time over that of the reference just before it
   bool best = false;    ///< every faster row of its map, angle and backend is more often wrong
@@ -48,7 +48,7 @@ struct HeatMap {
   std::vector<float> texels;  ///< |Δuv|, infinite where the ray is wrong; NaN where it is not judged
 };
 
-/// The first map once more, after everything else: how far time ratios can be trusted.
+/// The first map at the first angle once more, after everything else: how far time ratios can be trusted.
 struct Rerun {
   std::size_t rows = 0;
   double median = 0, p90 = 0, worst = 0;  ///< of |second ratio / first − 1|
@@ -58,7 +58,7 @@ struct SweepPlan {
   std::vector<double> angles = {60, 20, 8, 2};
   std::vector<double> factors = {0.25, 0.5, 1, 2, 4};  ///< of a loop's default count
   std::vector<int> budgets = {16, 64, 256};            ///< of a loop that is only a bound
-  int image = 128;                                     ///< rays: image²
+  int image = 128, timed_image = 128;                  ///< rays whose errors are counted: image²; timed: timed_image²
   int repeats = 3;
   bool times_all = true;           ///< else only the first map is timed, with techniques at their own counts
   std::size_t maps_elsewhere = 0;  ///< of the maps, how many backends after the first sweep
@@ -77,7 +77,7 @@ struct Sweep {
   std::vector<NotRun> not_run;
   double seconds = 0;  ///< wall time of it all
 
-  /// Whether there are times on a map.
+  /// Whether there are times of a map on the first backend.
   bool is_timed(const std::string& map) const;
 };
 

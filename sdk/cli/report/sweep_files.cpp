@@ -44,6 +44,7 @@ nlohmann::json to_json(const Sweep& sweep) {
   return {{"maps", sweep.maps},
           {"backends", sweep.backends},
           {"rays", sweep.plan.image * sweep.plan.image},
+          {"timed_rays", sweep.plan.timed_image * sweep.plan.timed_image},
           {"repeats", sweep.plan.repeats},
           {"reference", sweep.reference},
           {"defaults", sweep.defaults},

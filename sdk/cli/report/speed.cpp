@@ -143,7 +143,8 @@ std::string speed_section(const Report& report) {
       "{} rows of {} rays, on {}{}; times are medians of {} runs over {} rays, interleaved{}. Time is a ratio to {} at "
       "its defaults "
       "with "
-      "the hardware filter, which runs before each round. Here a ray whose budget runs out counts as wrong. Plots and "
+      "the hardware filter, which runs several times in each round. Here a ray whose budget runs out counts as wrong. "
+      "Plots and "
       "tables are of {}; down and to the left is better. Solid: hardware filter; dashed: exact. What is never wrong is "
       "drawn at half a ray.</p>\n",
       sweep.rows.size(), plan.image * plan.image, escape(fmt::format("{}", fmt::join(sweep.backends, " and "))),

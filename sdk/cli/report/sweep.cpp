@@ -19,6 +19,7 @@ namespace {
 
 /// What times are relative to: the technique that engines run, at its descriptor's counts, with the hardware filter.
 constexpr const char* reference_technique = "relief";
+constexpr std::size_t references_a_round = 8;  // or fewer, one before each setting
 constexpr double heat_angle = 20;  // degrees, where techniques differ most to the eye
 
 /// Hits read back at once, by all workers, stay below this, or are those of one setting each.
@@ -75,19 +76,31 @@ bool wants_time(const SweepPlan& plan, const Setting& setting) {
   return plan.times_all || setting.loop.empty();
 }
 
-/// The reference first, if there is one, then every timed setting.
-std::vector<TraceRequest> timed_requests(const MapRun& run, const BackendInfo& backend, bool has_reference) {
+/// What is timed at an angle in a round.
+struct TimedRequests {
   std::vector<TraceRequest> requests;
-  if (has_reference) {
-    std::map<std::string, double> values;
-    set_scale(*run.input.registry, run.ray_case.scale, run.ray_case.height, values);
-    requests.push_back({reference_technique, HeightFilter::hardware, false,
-                        values_on(*run.input.registry, backend, std::move(values))});
-  }
+  std::vector<std::size_t> settings, references;  ///< places of the settings that want a time, and of the reference
+};
+
+/// The reference comes again and again among the settings: one of its times alone differs by a fifth from the next.
+TimedRequests timed_requests(const MapRun& run, const BackendInfo& backend, bool has_reference) {
+  TraceRequest reference{reference_technique, HeightFilter::hardware, false, {}};
+  set_scale(*run.input.registry, run.ray_case.scale, run.ray_case.height, reference.values);
+  reference.values = values_on(*run.input.registry, backend, std::move(reference.values));
+  const auto wanted = static_cast<std::size_t>(std::count_if(
+      run.settings.begin(), run.settings.end(), [&](const Setting& one) { return wants_time(run.plan, one); }));
+  const std::size_t between = (wanted + references_a_round - 1) / references_a_round;
+  TimedRequests timed;
   for (const Setting& setting : run.settings) {
-    if (wants_time(run.plan, setting)) requests.push_back(request_of(run, backend, setting, false));
+    if (!wants_time(run.plan, setting)) continue;
+    if (has_reference && timed.settings.size() % between == 0) {
+      timed.references.push_back(timed.requests.size());
+      timed.requests.push_back(reference);
+    }
+    timed.settings.push_back(timed.requests.size());
+    timed.requests.push_back(request_of(run, backend, setting, false));
   }
-  return requests;
+  return timed;
 }
 
 Result<JobResult> trace_all(const MapRun& run, Backend& backend, std::span<const std::vector<Ray>> rays,
@@ -222,7 +235,7 @@ Status prepare(Backend& backend, const Sweep& sweep, std::span<MapSweep> maps, P
   }
   for (const MapSweep& map : timed_maps(maps, sweep.plan)) {
     const auto requests = std::make_shared<const std::vector<TraceRequest>>(
-        timed_requests(map.run, backend.info(), !sweep.reference.empty()));
+        timed_requests(map.run, backend.info(), !sweep.reference.empty()).requests);
     for (std::size_t part = 0; part < workers; ++part) {
       const std::size_t first = requests->size() * part / workers, last = requests->size() * (part + 1) / workers;
       if (first == last) continue;
@@ -234,31 +247,46 @@ Status prepare(Backend& backend, const Sweep& sweep, std::span<MapSweep> maps, P
   return work_at_once(backend, pieces);
 }
 
-/// Times of the rows that want them, and of the reference before each round over an angle's settings.
+/// Medians of the reference's times in each round; none without a reference.
+std::vector<double> reference_seconds(std::span<const std::vector<double>> seconds, const TimedRequests& timed) {
+  std::vector<double> rounds;
+  for (std::size_t k = 0; !timed.references.empty() && k < seconds[timed.references.front()].size(); ++k) {
+    std::vector<double> times;
+    for (std::size_t place : timed.references) times.push_back(seconds[place][k]);
+    rounds.push_back(median(times));
+  }
+  return rounds;
+}
+
+void set_times(const std::vector<double>& times, std::span<const double> reference, SweepRow& row) {
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < reference.size(); ++k) {
+    if (reference[k] > 0) ratios.push_back(times[k] / reference[k]);
+  }
+  const auto [fastest, slowest] = std::minmax_element(times.begin(), times.end());
+  row.seconds = median(times);
+  row.spread = row.seconds > 0 && times.size() > 1 ? (*slowest - *fastest) / row.seconds : -1;
+  row.ratio = median(ratios);
+}
+
+/// Of the rows that want them.
 Status time_all(const MapRun& run, Angles angles, Backend& backend, bool has_reference, std::vector<SweepRow>& rows) {
-  const std::vector<TraceRequest> requests = timed_requests(run, backend.info(), has_reference);
+  const TimedRequests timed = timed_requests(run, backend.info(), has_reference);
   const TraceRounds rounds{run.plan.repeats, true};
   const std::vector<std::vector<Ray>> rays = rays_of(run.ray_case, angles, run.plan.timed_image);
-  Result<JobResult> result = trace_all(run, backend, rays, requests, rounds, false);
+  Result<JobResult> result = trace_all(run, backend, rays, timed.requests, rounds, false);
   if (!result) return tl::unexpected(result.error());
   if (result->command_seconds.empty()) return {};  // no timestamps
-  const std::vector<std::vector<double>> seconds = trace_seconds(*result, rays.size(), requests.size(), rounds);
-  std::vector<SweepRow*> timed;  // of every angle, in the order of the requests
-  for (SweepRow& row : rows) {
-    if (wants_time(run.plan, row.setting)) timed.push_back(&row);
-  }
-  const std::size_t skipped = has_reference ? 1 : 0, settings = requests.size() - skipped;
-  for (std::size_t r = 0; r < timed.size(); ++r) {
-    const std::size_t first = r / settings * requests.size();  // of the row's angle: the reference, if any
-    const std::vector<double>& times = seconds[first + skipped + r % settings];
-    std::vector<double> ratios;
-    for (std::size_t k = 0; has_reference && k < times.size(); ++k) {
-      if (seconds[first][k] > 0) ratios.push_back(times[k] / seconds[first][k]);
+  const std::vector<std::vector<double>> seconds = trace_seconds(*result, rays.size(), timed.requests.size(), rounds);
+  auto row = rows.begin();
+  for (std::size_t angle = 0; angle < angles.size(); ++angle) {
+    const auto here = std::span(seconds).subspan(angle * timed.requests.size(), timed.requests.size());
+    const std::vector<double> reference = reference_seconds(here, timed);
+    auto place = timed.settings.begin();
+    for (const Setting& setting : run.settings) {
+      if (wants_time(run.plan, setting)) set_times(here[*place++], reference, *row);
+      ++row;
     }
-    auto [fastest, slowest] = std::minmax_element(times.begin(), times.end());
-    timed[r]->seconds = median(times);
-    timed[r]->spread = timed[r]->seconds > 0 && times.size() > 1 ? (*slowest - *fastest) / timed[r]->seconds : -1;
-    timed[r]->ratio = median(ratios);
   }
   return {};
 }

@@ -25,7 +25,7 @@ struct SweepRow {
   ErrorFigures error;
   double seconds = -1;  ///< median of the repeats; −1: not timed
   double spread = -1;   ///< (slowest − fastest) / median of the repeats
-  double ratio = -1;    ///< median over the repeats of the time over that of the reference just before it
+  double ratio = -1;    ///< median over the repeats of the time over the reference's median time in the same round
   bool best = false;    ///< every faster row of its map, angle and backend is more often wrong
 
   /// A ray whose budget runs out is wrong too, here.

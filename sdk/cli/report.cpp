@@ -82,13 +82,13 @@ void leave_out_maps(const ReportOptions& options, std::vector<RayCase>& maps, st
 /// What a quick report leaves out of what it measures at all.
 void say_what_is_left_out(const EvaluationInput& input, std::vector<NotRun>& not_run) {
   if (!input.ray_cases.empty()) {
+    const char* const less = "--quick compiles and times less";
     if (input.backends.size() > 1)
       not_run.push_back({"sweep on all backends but the first", "--quick sweeps on one: errors hardly differ"});
-    not_run.push_back({"times of maps but the first, and of loops at other counts than their own",
-                       "--quick compiles and times less"});
-    not_run.push_back({"rays with the hardware filter, but in the sweep on the first backend, without validation",
-                       "--quick holds the exact filter's against other backends"});
-    not_run.push_back({"times of rays, but in the sweep", "--quick times on one backend"});
+    if (input.ray_cases.size() > 1) not_run.push_back({"times of maps but the first", less});
+    not_run.push_back({"times of loops at other counts than their own", less});
+    not_run.push_back({"rays with the hardware filter, but in the sweep, without validation", less});
+    not_run.push_back({"times of rays, but in the sweep", less});
   }
   if (input.scenes.empty()) return;
   not_run.push_back({"prisms of techniques that claim no first hits, with their agreement between backends",
@@ -113,15 +113,6 @@ EvaluationInput input_to_judge(EvaluationInput input, const ReportOptions& optio
   input.repeats = 1;
   input.crack_seeds = 1;
   return input;
-}
-
-/// Of all settings of the sweep; those of the first height map's rays are counted in `evaluate`.
-void check_sweep(const Sweep& sweep, std::vector<Check>& checks) {
-  if (sweep.rows.empty()) return;
-  std::uint64_t non_finite = 0;
-  for (const SweepRow& row : sweep.rows) non_finite += row.error.non_finite;
-  checks.push_back({"rays with NaN or Inf in the sweep", fmt::format("{} in {} rows", non_finite, sweep.rows.size()),
-                    "0", non_finite == 0});
 }
 
 /// The first height map is judged ray by ray together with the scenes; the sweep covers all of them. The maps that
@@ -153,7 +144,7 @@ Result<Report> measure(EvaluationInput input, const ReportOptions& options, std:
   if (!evaluation) return tl::unexpected(evaluation.error());
   evaluation->not_run.insert(evaluation->not_run.end(), not_run.begin(), not_run.end());
   report.evaluation = std::move(*evaluation);
-  check_sweep(report.sweep, report.evaluation.checks);
+  check_finite(report.sweep, report.evaluation.checks);
   report.plots = draw_plots(report.sweep, files);
   input.clock->end("plots");
   report.phases = input.clock->phases();
@@ -197,7 +188,7 @@ void print_techniques(const Report& report) {
   };
   auto find_timed = [&](const std::string& technique) {
     return std::find_if(report.sweep.rows.begin(), report.sweep.rows.end(), [&](const SweepRow& r) {
-      return r.map == map && r.backend == backend && r.setting.filter == HeightFilter::exact &&
+      return r.map == map && r.backend == report.sweep.backends.front() && r.setting.filter == HeightFilter::exact &&
              r.setting.technique == technique && r.setting.loop.empty() && r.angle == shown_angle && r.seconds > 0;
     });
   };

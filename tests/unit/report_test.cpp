@@ -91,6 +91,21 @@ TEST(ReportHtml, WhatWasNotMeasuredIsADash) {
   EXPECT_EQ(fixed(std::nan(""), 3), "–");
 }
 
+TEST(ReportSweep, ANanInItFailsTheReport) {
+  Sweep sweep = two_points();
+  std::vector<Check> checks;
+  check_finite(sweep, checks);
+  ASSERT_EQ(checks.size(), 1U);
+  EXPECT_TRUE(checks[0].passed);
+  EXPECT_EQ(checks[0].found, "0 in 3 rows");
+  sweep.rows[1].error.non_finite = 2;
+  check_finite(sweep, checks);
+  EXPECT_FALSE(checks[1].passed);
+  EXPECT_EQ(checks[1].found, "2 in 3 rows (relief, linear_steps = 400 on hills, \"and\" valleys at 20°)");
+  check_finite({}, checks);
+  EXPECT_EQ(checks.size(), 2U) << "nothing was swept";
+}
+
 TEST(ReportHtml, MissingPictureIsAnErrorWithItsFile) {
   Result<std::string> uri = png_uri("/nonexistent/picture.png");
   ASSERT_FALSE(uri);
@@ -119,8 +134,11 @@ TEST(ReportPlot, SaysThatGnuplotIsMissing) {
 
 TEST(ReportPlot, SaysThatThereAreNoTimestamps) {
   Sweep sweep = two_points();
+  sweep.reference = "relief";
   for (SweepRow& row : sweep.rows) row.ratio = -1;
   EXPECT_EQ(plot_of(sweep).problem, "the backend has no timestamps");
+  sweep.reference.clear();
+  EXPECT_EQ(plot_of(sweep).problem, "there is no reference to relate times to");
 }
 
 TEST(ReportPlot, SaysThatTimesAreOfAnotherMap) {

@@ -12,14 +12,14 @@ Status find_cracks(SceneRun& run) {
   const auto displaced = run.pictures.find({"vertex", ""});
   const bool draws_prisms =
       run.input.registry->stages.contains("prism") && run.backend.info().features.contains("geometry");
-  if (!draws_prisms) return {};
+  std::vector<std::string> techniques = run.input.techniques;
+  std::erase_if(techniques, [&](const std::string& name) { return !holds_silhouette(*run.input.registry, name); });
+  if (!draws_prisms || techniques.empty()) return {};
   if (displaced == run.pictures.end()) {
     run.evaluation.not_run.push_back({fmt::format("cracks of scene {} on {}", run.scene_name, run.backend.info().name),
                                       "there is no picture of the finely displaced mesh"});
     return {};
   }
-  std::vector<std::string> techniques = run.input.techniques;
-  std::erase_if(techniques, [&](const std::string& name) { return !holds_silhouette(*run.input.registry, name); });
   std::vector<Mesh> shuffled;
   for (std::uint64_t seed = 1; seed <= run.input.crack_seeds; ++seed) shuffled.push_back(shuffle(run.parts.mesh, seed));
   const std::size_t at_once = pictures_at_once(run, shuffled.size());

@@ -1,4 +1,5 @@
-/// What is timed, and the non-dominated set: what is worth its time.
+/// What a sweep's rows say together: what is timed, what is worth its time (the non-dominated set), what is finite.
+#include <fmt/format.h>
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -30,6 +31,18 @@ bool Sweep::is_timed(const std::string& map) const {
   return std::any_of(rows.begin(), rows.end(), [&](const SweepRow& row) {
     return row.map == map && row.backend == backends.front() && row.ratio > 0;
   });
+}
+
+void check_finite(const Sweep& sweep, std::vector<Check>& checks) {
+  if (sweep.rows.empty()) return;
+  std::uint64_t found = 0;
+  std::string where;
+  for (const SweepRow& row : sweep.rows) {
+    found += row.error.non_finite;
+    if (row.error.non_finite > 0) where = fmt::format(" ({} on {} at {}°)", label(row.setting), row.map, row.angle);
+  }
+  checks.push_back({"rays with NaN or Inf in the sweep",
+                    fmt::format("{} in {} rows{}", found, sweep.rows.size(), where), "0", found == 0});
 }
 
 }  // namespace relievo::cli

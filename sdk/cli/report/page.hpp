@@ -33,7 +33,4 @@ std::string speed_section(const Report& report);
 std::string costs_section(const Report& report);
 Result<std::string> heat_section(const Report& report);
 
-/// The row's time over that of relief mapping with the same rays, filter and backend; −1 when there is none.
-double ratio_to_relief(const Evaluation& evaluation, const RayRow& row);
-
 }  // namespace relievo::cli

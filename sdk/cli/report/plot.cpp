@@ -188,6 +188,7 @@ Plot draw_plot(const Sweep& sweep, const std::string& map, const PlotKind& kind,
   if (script.empty()) {
     plot.problem = kind.x != time_of || sweep.is_timed(map) ? "no setting has anything to show"
                    : sweep.is_timed(sweep.maps.front())     ? "times are of the first map alone"
+                   : sweep.reference.empty()                ? "there is no reference to relate times to"
                                                             : "the backend has no timestamps";
     return plot;
   }

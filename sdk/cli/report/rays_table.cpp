@@ -32,6 +32,16 @@ double million_rays_per_second(const RayRow& row) {
   return row.seconds > 0 ? static_cast<double>(row.error.rays) / row.seconds / 1e6 : -1;
 }
 
+/// The row's time over that of relief mapping with the same rays, filter and backend; −1 when there is none.
+double ratio_to_relief(const Evaluation& evaluation, const RayRow& row) {
+  for (const RayRow& other : evaluation.rays) {
+    bool reference = other.technique == "relief" && same_rays(other, row) && other.filter == row.filter &&
+                     other.backend == row.backend;
+    if (reference && other.seconds > 0 && row.seconds > 0) return row.seconds / other.seconds;
+  }
+  return -1;
+}
+
 std::vector<Cell> cells(const Evaluation& evaluation, const RayRow& row, bool timed) {
   const ErrorFigures& e = row.error;
   std::vector<Cell> list = {{row.technique, "name"},
@@ -75,15 +85,6 @@ std::string case_html(const Evaluation& evaluation, const RayRow& first) {
 }
 
 }  // namespace
-
-double ratio_to_relief(const Evaluation& evaluation, const RayRow& row) {
-  for (const RayRow& other : evaluation.rays) {
-    bool reference = other.technique == "relief" && same_rays(other, row) && other.filter == row.filter &&
-                     other.backend == row.backend;
-    if (reference && other.seconds > 0 && row.seconds > 0) return row.seconds / other.seconds;
-  }
-  return -1;
-}
 
 std::string rays_section(const Report& report) {
   const std::vector<RayRow>& rows = report.evaluation.rays;

@@ -124,8 +124,9 @@ std::string spread_html(const Sweep& sweep) {
   const Rerun& rerun = sweep.rerun;
   if (rerun.rows == 0) return {};
   return fmt::format(
-      "<p>How far to trust a time: the {} timed settings of the first map at {}°, timed once more after everything "
-      "else, changed their ratio by {:.1f} % (median), {:.1f} % (nine of ten stay below) and {:.0f} % (worst). Errors, "
+      "<p>How far to trust a time: the {} timed settings of the first map at {}°, timed once more after the rest "
+      "of the sweep, changed their ratio by {:.1f} % (median), {:.1f} % (nine of ten stay below) and {:.0f} % (worst). "
+      "Errors, "
       "steps and reads do not change.</p>\n",
       rerun.rows, sweep.plan.angles.front(), rerun.median * 100, rerun.p90 * 100, rerun.worst * 100);
 }

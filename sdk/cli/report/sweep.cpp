@@ -19,7 +19,7 @@ namespace {
 
 /// What times are relative to: the technique that engines run, at its descriptor's counts, with the hardware filter.
 constexpr const char* reference_technique = "relief";
-constexpr std::size_t references_a_round = 8;  // or fewer, one before each setting
+constexpr std::size_t references_a_round = 8;  // at most, among the settings at equal distances
 constexpr double heat_angle = 20;              // degrees, where techniques differ most to the eye
 
 /// Hits read back at once, by all workers, stay below this, or are those of one setting each.

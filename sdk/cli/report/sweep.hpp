@@ -48,7 +48,8 @@ struct HeatMap {
   std::vector<float> texels;  ///< |Δuv|, infinite where the ray is wrong; NaN where it is not judged
 };
 
-/// The first map at the first angle once more, after everything else: how far time ratios can be trusted.
+/// The first map at the first angle once more, after the rest of that backend's sweep: how far time ratios can be
+/// trusted.
 struct Rerun {
   std::size_t rows = 0;
   double median = 0, p90 = 0, worst = 0;  ///< of |second ratio / first − 1|
@@ -90,6 +91,9 @@ Result<Sweep> run_sweep(const EvaluationInput& input, const SweepPlan& plan);
 
 /// Marks the rows that no other is at once as fast and as right as, for each map, angle and backend.
 void mark_best(std::vector<SweepRow>& rows);
+
+/// Adds the claim that no ray of the sweep has NaN or Inf.
+void check_finite(const Sweep& sweep, std::vector<Check>& checks);
 
 nlohmann::json to_json(const Sweep& sweep);
 

@@ -15,6 +15,7 @@ VkPhysicalDeviceFeatures wanted_features(const VkPhysicalDeviceFeatures& offered
   wanted.tessellationShader = offered.tessellationShader;
   wanted.vertexPipelineStoresAndAtomics = offered.vertexPipelineStoresAndAtomics;
   wanted.fragmentStoresAndAtomics = offered.fragmentStoresAndAtomics;
+  wanted.shaderFloat64 = offered.shaderFloat64;
   wanted.shaderImageGatherExtended = offered.shaderImageGatherExtended;
   wanted.shaderStorageImageExtendedFormats = offered.shaderStorageImageExtendedFormats;
   return wanted;

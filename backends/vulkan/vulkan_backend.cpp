@@ -34,6 +34,7 @@ BackendInfo info_of(const DeviceTraits& device) {
                                  VK_API_VERSION_PATCH(version));
   info.features = {"compute", "depth_write", "dynamic_loops", "explicit_lod", "gather", "texture_3d", "vertex_texture"};
   if (device.features.shaderStorageImageExtendedFormats) info.features.insert("extended_images");
+  if (device.features.shaderFloat64) info.features.insert("float64");
   if (device.features.geometryShader) info.features.insert("geometry");
   if (device.features.tessellationShader) info.features.insert("tessellation");
   if (device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) info.features.insert("software");

@@ -7,9 +7,12 @@
 // narrower than this times the least may be passed over: more than what rounding can do to either.
 const float RELIEVO_CONE_TIE = 1.000001;
 
+// Of rises: what is less, squared, bounds no cone. The square of a smaller one may be 0, with any sign.
+const float RELIEVO_CONE_FLAT = 1.0e-30;
+
 // The widest cone whose border is nowhere above a point this far away and so much higher.
 float relievo_cone_to(float squared, float rise, float widest) {
-  precise float ratio = squared / (rise * rise);
+  precise float ratio = squared / max(rise * rise, RELIEVO_CONE_FLAT);
   return rise > 0.0 ? min(ratio, widest) : widest;
 }
 
@@ -24,9 +27,10 @@ float relievo_cone_widest(ivec2 extent) {
   return longest * longest;
 }
 
-// Four roundings up to here, each under 2^-23; a cone may only be too narrow.
+// A cone may only be too narrow. In ulp, 2^-23, as Vulkan allows them: 2 of the ratio and 7 of its root, 3 of the quotient; then 7
+// of the root.
 float relievo_cone_stored(float narrowest, ivec2 extent) {
-  precise float ratio = sqrt(narrowest) / float(max(extent.x, extent.y)) * 0.9999995;
-  precise float stored = sqrt(ratio) * 0.9999995;
+  precise float ratio = sqrt(narrowest) / float(max(extent.x, extent.y)) * 0.9999985;
+  precise float stored = sqrt(ratio) * 0.999999;
   return stored;
 }

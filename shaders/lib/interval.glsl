@@ -10,8 +10,14 @@ struct Interval {
 // Longest way in texture widths that a search covers when neither lid nor base nor t_max ends the ray.
 const float RELIEVO_MAX_TRAVEL = 1024.0;
 
-// Quotients of one value differ by less, relative to it.
-const float RELIEVO_SAME_TIME = 2.4e-7;
+// Quotients of one value differ by less, relative to it: each is 3 ulp off at most (2.5 of the division, 0.5 of the numerator).
+const float RELIEVO_SAME_TIME = 7.5e-7;
+
+// Whether the later of two times may be the same as an earlier one, as far as their quotients tell.
+bool relievo_is_same_time(float earlier, float later) {
+  precise float latest = earlier * (1.0 + RELIEVO_SAME_TIME);
+  return later <= latest;
+}
 
 // t where a coordinate that changes comes to [0, 1].
 float relievo_side(float origin, float direction) {
@@ -55,8 +61,7 @@ bool relievo_interval(Ray ray, out Interval interval) {
   relievo_clip_axis(ray.origin.y, ray.direction.y, interval);
   if (interval.enter > interval.exit) {
     // Near a corner of the domain two t may be one, rounded twice: an exact walk finds out whether it is met.
-    precise float latest = interval.exit * (1.0 + RELIEVO_SAME_TIME);
-    if (interval.end_status != RELIEVO_OUTSIDE || interval.enter > latest) return false;
+    if (interval.end_status != RELIEVO_OUTSIDE || !relievo_is_same_time(interval.exit, interval.enter)) return false;
     interval.exit = interval.enter;
   }
 #endif
@@ -85,7 +90,7 @@ bool relievo_interval(Ray ray, out Interval interval) {
 }
 
 bool relievo_enters_at_lid(Ray ray, Interval interval) {
-  return ray.origin.z > 1.0 && interval.enter == relievo_lid(ray);
+  return ray.origin.z > 1.0 && relievo_is_same_time(relievo_lid(ray), interval.enter);
 }
 
 // For each axis, whether it is there that the ray comes into the domain of a clip map.
@@ -93,8 +98,8 @@ bvec2 relievo_enters_at_side(Ray ray, Interval interval) {
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
   vec2 side = vec2(relievo_side(ray.origin.x, ray.direction.x), relievo_side(ray.origin.y, ray.direction.y));
   bvec2 changes = notEqual(ray.direction.xy, vec2(0.0));
-  return bvec2(changes.x && interval.enter > 0.0 && interval.enter == side.x,
-               changes.y && interval.enter > 0.0 && interval.enter == side.y);
+  return bvec2(changes.x && interval.enter > 0.0 && relievo_is_same_time(side.x, interval.enter),
+               changes.y && interval.enter > 0.0 && relievo_is_same_time(side.y, interval.enter));
 #else
   return bvec2(false);
 #endif

@@ -1,10 +1,12 @@
 /// Backends side by side: drivers compile on one thread each.
 #pragma once
 
+#include <functional>
 #include <future>
+#include <span>
 #include <vector>
 
-#include "relievo/result.hpp"
+#include "relievo/backend.hpp"
 
 namespace relievo::cli {
 
@@ -19,5 +21,15 @@ Status for_each_at_once(Items& items, const Work& work) {
   }
   return all;
 }
+
+/// Backends of one kind that share work, each with copies of the textures that it needs.
+inline constexpr std::size_t backends_at_once = 2;
+
+/// Work for any backend of a kind.
+using BackendWork = std::function<Status(Backend&)>;
+
+/// Shares `pieces` between the backend and others of its kind, as far as they can be opened. After a failure no piece
+/// is begun.
+Status share_work(Backend& backend, std::span<const BackendWork> pieces);
 
 }  // namespace relievo::cli

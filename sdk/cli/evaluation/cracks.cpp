@@ -12,8 +12,7 @@ Status find_cracks(SceneRun& run) {
   const auto displaced = run.pictures.find({"vertex", ""});
   const bool draws_prisms =
       run.input.registry->stages.contains("prism") && run.backend.info().features.contains("geometry");
-  std::vector<std::string> techniques = run.input.techniques;
-  std::erase_if(techniques, [&](const std::string& name) { return !holds_silhouette(*run.input.registry, name); });
+  const std::vector<std::string> techniques = techniques_with_silhouettes(run);
   if (!draws_prisms || techniques.empty()) return {};
   if (displaced == run.pictures.end()) {
     run.evaluation.not_run.push_back({fmt::format("cracks of scene {} on {}", run.scene_name, run.backend.info().name),

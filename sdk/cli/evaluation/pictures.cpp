@@ -152,10 +152,7 @@ Status finish_reference(SceneRun& run, const std::string& stage, const Reference
 /// What a stage is drawn with; nothing where it traces nothing.
 std::vector<std::string> techniques_of(const SceneRun& run, const StageDescriptor& stage) {
   if (stage.roles.empty()) return {""};
-  std::vector<std::string> techniques = run.input.techniques;
-  if (stage.mesh == "prisms" && !run.input.all_pictures)
-    std::erase_if(techniques, [&](const std::string& name) { return !holds_silhouette(*run.input.registry, name); });
-  return techniques;
+  return stage.mesh == "prisms" && !run.input.all_pictures ? techniques_with_silhouettes(run) : run.input.techniques;
 }
 
 Status run_stage(SceneRun& run, const StageDescriptor& stage) {

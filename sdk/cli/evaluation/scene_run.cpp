@@ -8,6 +8,12 @@ std::size_t pictures_at_once(const SceneRun& run, std::size_t each) {
   return std::max<std::size_t>(1, run.input.pixels_at_once / std::max<std::size_t>(1, pixels * each));
 }
 
+std::vector<std::string> techniques_with_silhouettes(const SceneRun& run) {
+  std::vector<std::string> techniques = run.input.techniques;
+  std::erase_if(techniques, [&](const std::string& name) { return !holds_silhouette(*run.input.registry, name); });
+  return techniques;
+}
+
 RenderRequest request_of(const SceneRun& run, const std::string& stage, const std::string& technique, Aov aov) {
   return {stage, technique, HeightFilter::exact, aov, run.input.values};
 }

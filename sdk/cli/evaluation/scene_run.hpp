@@ -51,6 +51,9 @@ struct SceneRun {
 /// Cases of `each` pictures that one Job draws.
 std::size_t pictures_at_once(const SceneRun& run, std::size_t each = 1);
 
+/// Those of the input.
+std::vector<std::string> techniques_with_silhouettes(const SceneRun& run);
+
 /// With the exact filter.
 RenderRequest request_of(const SceneRun& run, const std::string& stage, const std::string& technique, Aov aov);
 

@@ -27,7 +27,11 @@ void mark_best(std::vector<SweepRow>& rows) {
   }
 }
 
-bool Sweep::is_timed(const std::string& map) const {
+bool Sweep::is_timed() const {
+  return std::any_of(rows.begin(), rows.end(), [](const SweepRow& row) { return row.seconds >= 0; });
+}
+
+bool Sweep::has_ratios(const std::string& map) const {
   return std::any_of(rows.begin(), rows.end(), [&](const SweepRow& row) {
     return row.map == map && row.backend == backends.front() && row.ratio > 0;
   });

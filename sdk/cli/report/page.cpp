@@ -48,10 +48,6 @@ figcaption b { color: var(--ink); font-weight: 600; }
 }
 )";
 
-bool has_times(const Sweep& sweep) {
-  return std::any_of(sweep.rows.begin(), sweep.rows.end(), [](const SweepRow& row) { return row.seconds >= 0; });
-}
-
 std::string introduction(const Report& report) {
   std::size_t failed = 0;
   for (const Check& c : report.evaluation.checks) failed += !c.passed;
@@ -68,7 +64,7 @@ std::string introduction(const Report& report) {
       "beside the steps and texel reads that it took; the milliseconds are this machine's.{}</p>\n"
       "<p class=\"verdict {}\">{}</p>\n",
       escape(fmt::format("{}", fmt::join(report.techniques, ", "))), report.ray_image * report.ray_image,
-      report.repeats == 0   ? (has_times(report.sweep) ? "timed in the sweep alone" : "not timed")
+      report.repeats == 0   ? (report.sweep.is_timed() ? "timed in the sweep alone" : "not timed")
       : report.repeats == 1 ? "timed once"
                             : fmt::format("the median of {} runs", report.repeats),
       report.values.empty() ? "" : escape(fmt::format(" Set otherwise than described: {}.", to_text(report.values))),

@@ -186,10 +186,10 @@ Plot draw_plot(const Sweep& sweep, const std::string& map, const PlotKind& kind,
   Plot plot{map, &kind, "", ""};
   std::string script = plot_script(sweep, map, kind, angles);
   if (script.empty()) {
-    plot.problem = kind.x != time_of || sweep.is_timed(map) ? "no setting has anything to show"
-                   : sweep.is_timed(sweep.maps.front())     ? "times are of the first map alone"
-                   : sweep.reference.empty()                ? "there is no reference to relate times to"
-                                                            : "the backend has no timestamps";
+    plot.problem = kind.x != time_of || sweep.has_ratios(map) ? "no setting has anything to show"
+                   : sweep.has_ratios(sweep.maps.front())     ? "times are of the first map alone"
+                   : sweep.reference.empty()                  ? "there is no reference to relate times to"
+                                                              : "the backend has no timestamps";
     return plot;
   }
   Drawing drawing = run_gnuplot(script, identifier(sweep, map, kind));

@@ -44,7 +44,7 @@ std::string winners_html(const Sweep& sweep) {
   for (double angle : sweep.plan.angles) columns.push_back({fmt::format("{}°", angle)});
   std::vector<std::vector<Cell>> rows;
   for (const std::string& map : sweep.maps) {
-    if (!sweep.is_timed(map)) continue;
+    if (!sweep.has_ratios(map)) continue;
     rows.push_back({{map, "name"}});
     for (double angle : sweep.plan.angles) rows.back().push_back(winner(rows_at(sweep, map, angle)));
   }
@@ -113,7 +113,7 @@ std::string plot_html(const Plot& plot) {
 std::string map_html(const Report& report, const std::string& map, bool open) {
   std::string html = fmt::format("<details{}><summary><b>{}</b></summary>\n", open ? " open" : "", escape(map));
   html += defaults_html(report.sweep, map);
-  if (report.sweep.is_timed(map)) html += best_html(report.sweep, map);
+  if (report.sweep.has_ratios(map)) html += best_html(report.sweep, map);
   for (const Plot& plot : report.plots) {
     if (plot.map == map) html += plot_html(plot);
   }

@@ -78,8 +78,9 @@ struct Sweep {
   std::vector<NotRun> not_run;
   double seconds = 0;  ///< wall time of it all
 
-  /// Whether there are times of a map on the first backend.
-  bool is_timed(const std::string& map) const;
+  bool is_timed() const;  ///< whether any row is
+  /// Whether times of a map on the first backend are held against the reference.
+  bool has_ratios(const std::string& map) const;
 };
 
 /// All settings of the techniques of `input`, technique by technique. A loop whose default is in the hundreds is a

@@ -25,8 +25,8 @@ struct BackendInfo {
   std::string device, driver, api_version;
   std::string shader_target;  ///< what it consumes: "spirv", "glsl-450"
   /// Names of the shader-model features of descriptors ("compute", "geometry", "explicit_lod", "texture_3d", "gather",
-  /// "vertex_texture") and of abilities ("timestamps", "linear_float32", "shared_memory", "validation"), or "software"
-  /// for a driver that runs on the CPU.
+  /// "vertex_texture") and of abilities ("timestamps", "linear_float32", "float64", "shared_memory", "validation"), or
+  /// "software" for a driver that runs on the CPU.
   std::set<std::string> features;
   std::size_t max_storage_buffer = 0;  ///< bytes that a shader can reach in one; 0: no limit is known
 };

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <spirv-tools/libspirv.hpp>
 #include <spirv_cross/spirv.hpp>
 #include <utility>
 
@@ -14,11 +15,16 @@ namespace {
 
 using Id = std::uint32_t;
 
-/// By how many ulp a correctly rounded result may be moved further: at most half of that in either direction.
-constexpr std::uint32_t quotient_spread = 4;  // 2.5 ulp in all
-constexpr std::uint32_t root_spread = 8;      // 2 ulp of the inverse, at most twice as many of its own, and a quotient
-
 constexpr std::uint32_t sign_bit = 0x80000000, smallest_normal = 0x00800000, infinity = 0x7f800000;
+constexpr std::uint32_t mantissa_bits = 0x007fffff, mantissa_of_root_2 = 0x003504f4;
+constexpr std::uint32_t greatest_divisor = 0x7e800000;  // 2^126: beyond it quotients may be anything
+
+/// What becomes of a correctly rounded result.
+enum class Loosening {
+  flush,     ///< denormals and signs of zeros only
+  quotient,  ///< 2 ulp more, 2.5 in all
+  root,      ///< 2 ulp of the inverse are r² of a root with the mantissa r; then a quotient: 3 ulp more, or 4
+};
 
 void append(SpirvWords& words, spv::Op opcode, std::initializer_list<std::uint32_t> operands) {
   words.push_back(static_cast<std::uint32_t>(operands.size() + 1) << 16 | opcode);
@@ -30,6 +36,13 @@ void append(SpirvWords& words, SpirvInstruction instruction) {
   words.insert(words.end(), instruction.operands.begin(), instruction.operands.end());
 }
 
+/// ± a · b.
+struct Product {
+  spv::Op opcode = spv::OpFMul;  ///< or OpVectorTimesScalar
+  Id a = 0, b = 0;
+  bool is_negative = false;
+};
+
 /// What the module declares; ids are 0 where it does not.
 struct Declared {
   Id bound = 0;
@@ -37,7 +50,7 @@ struct Declared {
   std::array<Id, 5> floats{}, doubles{}, uints{}, bools{};  ///< types of so many components
   std::map<Id, unsigned> components;                        ///< of the types of floats
   std::set<Id> exact;                                       ///< NoContraction
-  std::map<Id, std::array<Id, 2>> products;                 ///< factors of those that may become part of a sum
+  std::map<Id, Product> products;                           ///< those that may become part of a sum
 };
 
 Declared read(std::span<const std::uint32_t> words) {
@@ -53,7 +66,8 @@ Declared read(std::span<const std::uint32_t> words) {
         if (spirv_string(operands.subspan(1)) == "GLSL.std.450") found.extended = operands[0];
         break;
       case spv::OpTypeFloat:
-        (operands[1] == 32 ? found.floats : found.doubles)[1] = operands[0];
+        if (operands[1] == 32) found.floats[1] = operands[0];
+        if (operands[1] == 64) found.doubles[1] = operands[0];
         break;
       case spv::OpTypeInt:
         if (operands[1] == 32 && operands[2] == 0) found.uints[1] = operands[0];
@@ -68,7 +82,15 @@ Declared read(std::span<const std::uint32_t> words) {
         if (operands[1] == spv::DecorationNoContraction) found.exact.insert(operands[0]);
         break;
       case spv::OpFMul:
-        if (!found.exact.contains(operands[1])) found.products[operands[1]] = {operands[2], operands[3]};
+      case spv::OpVectorTimesScalar:
+        if (!found.exact.contains(operands[1]))
+          found.products[operands[1]] = {static_cast<spv::Op>(one.opcode), operands[2], operands[3]};
+        break;
+      case spv::OpFNegate:
+        if (const auto product = found.products.find(operands[2]); product != found.products.end()) {
+          Product& negative = found.products[operands[1]] = product->second;
+          negative.is_negative = !negative.is_negative;
+        }
         break;
       default:
         break;
@@ -102,9 +124,9 @@ bool is_flushed(std::uint32_t opcode) {
   }
 }
 
-class Loosening {
+class Rewriter {
  public:
-  Loosening(std::span<const std::uint32_t> words, bool has_float64)
+  Rewriter(std::span<const std::uint32_t> words, bool has_float64)
       : words_(words), found_(read(words)), has_float64_(has_float64) {}
 
   SpirvWords run() {
@@ -178,40 +200,66 @@ class Loosening {
                 {emit(spv::OpIMul, type, {mixed, constant(n, 0xc2b2ae35)}), constant(n, 8)});
   }
 
-  /// Moved by as many ulp as may be, unless it is 0, infinite or no number.
-  Id move(unsigned n, Id bits, Id magnitude, std::uint32_t spread) {
-    const Id type = uint_type(n);
-    const Id by = emit(spv::OpUMod, type, {scramble(n, bits), constant(n, spread + 1)});
-    const Id moved = emit(spv::OpISub, type, {emit(spv::OpIAdd, type, {bits, by}), constant(n, spread / 2)});
-    const Id is_finite = emit(spv::OpULessThan, bool_type(n), {magnitude, constant(n, infinity)});
-    return emit(spv::OpSelect, type, {is_finite, moved, bits});
+  Id magnitude(unsigned n, Id bits) { return emit(spv::OpBitwiseAnd, uint_type(n), {bits, constant(n, ~sign_bit)}); }
+
+  Id is_finite(unsigned n, Id bits) {
+    return emit(spv::OpULessThan, bool_type(n), {magnitude(n, bits), constant(n, infinity)});
   }
 
-  /// From `exact`, what a driver may have made of it, as `result`.
-  void loosen_value(Id type, Id result, Id exact, std::uint32_t spread) {
+  /// By how many ulp a root may be moved, twice, and one: a mantissa of √2 or more is worth another in either
+  /// direction.
+  Id root_choices(unsigned n, Id bits) {
+    const Id mantissa = emit(spv::OpBitwiseAnd, uint_type(n), {bits, constant(n, mantissa_bits)});
+    const Id is_less = emit(spv::OpULessThan, bool_type(n), {mantissa, constant(n, mantissa_of_root_2)});
+    return emit(spv::OpSelect, uint_type(n), {is_less, constant(n, 7), constant(n, 9)});
+  }
+
+  /// Some ulp away, unless that or what it is moved from is infinite or no number.
+  Id move(unsigned n, Id bits, Loosening how) {
+    const Id type = uint_type(n);
+    const Id choices = how == Loosening::root ? root_choices(n, bits) : constant(n, 5);
+    const Id by = emit(spv::OpUMod, type, {scramble(n, bits), choices});
+    const Id half = emit(spv::OpShiftRightLogical, type, {choices, constant(n, 1)});
+    const Id moved = emit(spv::OpISub, type, {emit(spv::OpIAdd, type, {bits, by}), half});
+    const Id may = emit(spv::OpLogicalAnd, bool_type(n), {is_finite(n, bits), is_finite(n, moved)});
+    const Id is_zero = emit(spv::OpIEqual, bool_type(n), {magnitude(n, bits), constant(n, 0)});
+    return emit(spv::OpSelect, type, {is_zero, bits, emit(spv::OpSelect, type, {may, moved, bits})});
+  }
+
+  Id is_too_great(unsigned n, Id divisor) {
+    const Id bits = emit(spv::OpBitcast, uint_type(n), {divisor});
+    return emit(spv::OpUGreaterThan, bool_type(n), {magnitude(n, bits), constant(n, greatest_divisor)});
+  }
+
+  /// From `exact`, the result of `one` as it is here, what a driver may make of it, as the result that `one` has.
+  void loosen_value(const SpirvInstruction& one, Id exact) {
     ++place_;
-    const unsigned n = found_.components.at(type);
+    const unsigned n = found_.components.at(one.operands[0]);
+    const Loosening how = loosening_of(one);
     Id bits = emit(spv::OpBitcast, uint_type(n), {exact});
     const Id parity = emit(spv::OpIAdd, uint_type(n), {bits, constant(n, place_)});
     const Id zero = emit(spv::OpShiftLeftLogical, uint_type(n), {parity, constant(n, 31)});
-    const Id magnitude = emit(spv::OpBitwiseAnd, uint_type(n), {bits, constant(n, ~sign_bit)});
-    const Id is_none = emit(spv::OpULessThan, bool_type(n), {magnitude, constant(n, smallest_normal)});
-    if (spread > 0) bits = move(n, bits, magnitude, spread);
+    if (how != Loosening::flush) bits = move(n, bits, how);
+    Id is_none = emit(spv::OpULessThan, bool_type(n), {magnitude(n, bits), constant(n, smallest_normal)});
+    if (how == Loosening::quotient) {
+      const Id is_lost = emit(spv::OpLogicalAnd, bool_type(n), {is_too_great(n, one.operands[3]), is_finite(n, bits)});
+      is_none = emit(spv::OpLogicalOr, bool_type(n), {is_none, is_lost});
+    }
     const Id loose = emit(spv::OpSelect, uint_type(n), {is_none, zero, bits});
-    append(functions_, spv::OpBitcast, {type, result, loose});
+    append(functions_, spv::OpBitcast, {one.operands[0], one.operands[1], loose});
   }
 
-  std::uint32_t spread_of(const SpirvInstruction& one) const {
-    if (one.opcode == spv::OpFDiv) return quotient_spread;
-    if (one.opcode != spv::OpExtInst || one.operands[2] != found_.extended) return 0;
+  Loosening loosening_of(const SpirvInstruction& one) const {
+    if (one.opcode == spv::OpFDiv) return Loosening::quotient;
+    if (one.opcode != spv::OpExtInst || one.operands[2] != found_.extended) return Loosening::flush;
     switch (one.operands[3]) {
       case GLSLstd450Sqrt:
       case GLSLstd450Length:
       case GLSLstd450Distance:
       case GLSLstd450Normalize:
-        return root_spread;
+        return Loosening::root;
       default:
-        return 0;
+        return Loosening::flush;
     }
   }
 
@@ -228,8 +276,12 @@ class Loosening {
     const auto widen = [&](Id id) { return emit(spv::OpFConvert, type, {id}); };
     const auto term = [&](Id id, bool as_product) {
       if (!as_product) return widen(id);
-      const auto [a, b] = found_.products.at(id);
-      return emit(spv::OpFMul, type, {widen(a), widen(b)});
+      const Product& product = found_.products.at(id);
+      const bool by_number = product.opcode == spv::OpVectorTimesScalar;
+      const Id number_type = by_number ? double_type(1) : type;
+      const Id b = emit(spv::OpFConvert, number_type, {product.b});
+      const Id exact_product = emit(product.opcode, type, {widen(product.a), b});
+      return product.is_negative ? emit(spv::OpFNegate, type, {exact_product}) : exact_product;
     };
     const Id first = term(left, is_product(left)), second = term(right, !is_product(left));
     const Id sum = emit(is_difference ? spv::OpFSub : spv::OpFAdd, type, {first, second});
@@ -247,7 +299,7 @@ class Loosening {
       changed[1] = exact;
       append(functions_, {one.opcode, changed});
     }
-    loosen_value(operands[0], operands[1], exact, spread_of(one));
+    loosen_value(one, exact);
   }
 
   /// Decorations go along with the operations; what is declared anew stands before the functions.
@@ -283,8 +335,11 @@ class Loosening {
 }  // namespace
 
 SpirvWords loosen(std::span<const std::uint32_t> words, bool has_float64) {
-  if (words.size() < kSpirvHeaderWords) return {words.begin(), words.end()};
-  return Loosening(words, has_float64).run();
+  const spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
+  if (words.size() < kSpirvHeaderWords || !tools.Validate(words.data(), words.size())) {
+    return {words.begin(), words.end()};
+  }
+  return Rewriter(words, has_float64).run();
 }
 
 }  // namespace relievo

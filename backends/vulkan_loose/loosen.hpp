@@ -7,14 +7,13 @@
 
 namespace relievo {
 
-/// A module that computes the same with what a driver may do to 32-bit floats (Vulkan, "Precision and Operation of
-/// SPIR-V Instructions"), where software drivers round correctly:
-///  - a quotient is up to 2.5 ulp off, a square root what 1 / inversesqrt may be, in a way that looks random;
-///  - denormals that are computed or read from an image are 0, and the sign of a 0 is either;
-///  - with `has_float64`, which the device must then support, a · b ± c is one operation where neither is
-///  NoContraction.
-/// Inverse square roots keep the driver's error, for that may be all that is permitted.
-/// What cannot be read as SPIR-V stays as it is.
+/// The module with the errors in 32-bit floats that Vulkan permits a driver ("Precision and Operation of SPIR-V
+/// Instructions"), where software drivers round correctly. In a way that looks random:
+/// Quotients are up to 2.5 ulp off, and 0 for divisors beyond 2^126. Square roots are what 1 / inversesqrt may be, up
+/// to 3.5 ulp off, or 4.5 where the mantissa is √2 or more. Denormals that are computed or read from an image are 0,
+/// and the sign of a 0 is either. With `has_float64`, which the device must then support, a · b ± c is one operation
+/// where neither is NoContraction; a may be a vector. Inverse square roots keep the driver's error, for that may be all
+/// that is permitted. SPIR-V that is not valid stays as it is.
 SpirvWords loosen(std::span<const std::uint32_t> words, bool has_float64);
 
 }  // namespace relievo

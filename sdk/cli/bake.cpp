@@ -115,7 +115,7 @@ void add_bake(CLI::App& app, Context& context) {
                    ".exr or .pfm (all levels and layers, lossless); .png (the same for 8 and 16 bits, else a picture)")
       ->required();
   command->add_option("--address", options->address, "repeat, mirror, clamp or clip")->capture_default_str();
-  command->add_option("--backend", options->backend)->capture_default_str();
+  command->add_option("--backend", options->backend, "vulkan, opengl, vulkan_loose, …")->capture_default_str();
   command->add_option("--set", options->set, "map.parameter=value");
 }
 

@@ -229,7 +229,7 @@ void add_bench(CLI::App& app, Context& context) {
       ->check(CLI::Range(1, 8192))
       ->excludes(rays)
       ->capture_default_str();
-  command->add_option("--backend", options->backend)->capture_default_str();
+  command->add_option("--backend", options->backend, "vulkan, opengl, vulkan_loose, …")->capture_default_str();
   command->add_option("--filter", options->filter, "exact or hardware; --set technique.filter=… for one")
       ->capture_default_str();
   command->add_option("--repeat", options->repeat, "Timed rounds")->check(CLI::Range(1, 1000))->capture_default_str();

@@ -181,7 +181,9 @@ void add_conform(CLI::App& app, Context& context) {
       ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();
   command->add_option("--address", options->address, "Of the height files")->capture_default_str();
-  command->add_option("--backends", options->backends)->delimiter(',')->capture_default_str();
+  command->add_option("--backends", options->backends, "vulkan, opengl, vulkan_loose: see list backends")
+      ->delimiter(',')
+      ->capture_default_str();
   command->add_option("--ray-image", options->ray_image, "Rays a side of the ray image")
       ->check(CLI::Range(1, 8192))
       ->capture_default_str();

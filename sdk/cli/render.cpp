@@ -74,11 +74,11 @@ Status run_render(const Context& context, const RenderOptions& options) {
     print_json({{"output", options.output},
                 {"width", result->image.width},
                 {"height", result->image.height},
-                {"seconds", result->seconds},
+                {"seconds", result->seconds < 0 ? nlohmann::json() : nlohmann::json(result->seconds)},
                 {"degenerate_triangles", result->degenerate_triangles}});
   } else {
-    fmt::print("{}x{}, {:.1f} ms -> {}\n", result->image.width, result->image.height, result->seconds * 1e3,
-               options.output);
+    const std::string time = result->seconds < 0 ? "not timed" : fmt::format("{:.1f} ms", result->seconds * 1e3);
+    fmt::print("{}x{}, {} -> {}\n", result->image.width, result->image.height, time, options.output);
     if (result->degenerate_triangles)
       fmt::print("{} degenerate triangles drawn undisplaced\n", result->degenerate_triangles);
   }
@@ -94,7 +94,7 @@ void add_render(CLI::App& app, Context& context) {
   command->add_option("scene", options->scene, "Scene file (TOML)")->required();
   command->add_option("--technique", options->technique, "Technique for the stage's roles");
   command->add_option("--stage", options->stage, "surface, vertex, prism, …")->capture_default_str();
-  command->add_option("--backend", options->backend)->capture_default_str();
+  command->add_option("--backend", options->backend, "vulkan, opengl, vulkan_loose, …")->capture_default_str();
   command->add_option("-o,--output", options->output, ".png, or .exr for the numbers")->required();
   command->add_option("--aov", options->aov, "color, depth, normal, uv, steps, status, ray_origin or ray_direction")
       ->capture_default_str();

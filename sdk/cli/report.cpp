@@ -277,7 +277,9 @@ void add_report(CLI::App& app, Context& context) {
       "Height files, each with an optional :scale; the first is judged ray by ray, all are swept. A file that is not "
       "there is left out");
   command->add_option("--address", options->address, "Of the height files")->take_last()->capture_default_str();
-  command->add_option("--backends", options->backends)->delimiter(',')->capture_default_str();
+  command->add_option("--backends", options->backends, "vulkan, opengl, vulkan_loose: see list backends")
+      ->delimiter(',')
+      ->capture_default_str();
   command->add_option("--ray-image", options->ray_image, "Rays a side of the ray image")
       ->check(CLI::Range(1, 8192))
       ->take_last()

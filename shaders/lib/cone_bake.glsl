@@ -7,7 +7,8 @@
 // narrower than this times the least may be passed over: more than what rounding can do to either.
 const float RELIEVO_CONE_TIE = 1.000001;
 
-// Of rises: what is less, squared, bounds no cone. The square of a smaller one may be 0, with any sign.
+// Least square of a rise that is divided by: a smaller one may become a zero of either sign. Texels are 1 apart at least, so
+// that the cone is wider than any even then.
 const float RELIEVO_CONE_FLAT = 1.0e-30;
 
 // The widest cone whose border is nowhere above a point this far away and so much higher.

@@ -10,8 +10,9 @@ struct Interval {
 // Longest way in texture widths that a search covers when neither lid nor base nor t_max ends the ray.
 const float RELIEVO_MAX_TRAVEL = 1024.0;
 
-// Quotients of one value differ by less, relative to it: each is 3 ulp off at most (2.5 of the division, 0.5 of the numerator).
-const float RELIEVO_SAME_TIME = 7.5e-7;
+// Quotients of one value differ by less, relative to it. In ulp, 2^-23: 2.5 of each division, at most 1 of its numerator, and 1
+// where this is used.
+const float RELIEVO_SAME_TIME = 1.1e-6;
 
 // Whether the later of two times may be the same as an earlier one, as far as their quotients tell.
 bool relievo_is_same_time(float earlier, float later) {

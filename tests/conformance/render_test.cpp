@@ -51,6 +51,16 @@ TEST(Render, PicturesOfBothBackendsAgree) {
   }
 }
 
+TEST(Render, EveryStageDrawsMuchTheSameWithLooseArithmetic) {
+  const Scene scene = make_scene(MeshKind::torus);
+  const Mesh mesh = mesh_of(scene);
+  for (const auto& [stage, technique] : drawing_cases()) {
+    const auto exact = render_on("vulkan", scene, mesh, hills(), request_of(stage, technique));
+    const auto loose = render_on("vulkan_loose", scene, mesh, hills(), request_of(stage, technique));
+    EXPECT_GT(compare_images(exact.color, loose.color).within_percent, 99.5) << stage;
+  }
+}
+
 TEST(Render, TheSameComparisonCatchesSeededFaults) {
   const Scene scene = make_scene(MeshKind::torus);
   const Pixels good = render_on("vulkan", scene, mesh_of(scene), hills(), request_of("prism", "relief")).color;

@@ -22,7 +22,7 @@ Status for_each_at_once(Items& items, const Work& work) {
   return all;
 }
 
-/// Backends of one kind that share work, each with copies of the textures that it needs.
+/// How many backends of one kind share work; each has its own copies of the textures.
 inline constexpr std::size_t backends_at_once = 2;
 
 /// Work for any backend of a kind.

@@ -51,7 +51,7 @@ struct SceneRun {
 /// Cases of `each` pictures that one Job draws.
 std::size_t pictures_at_once(const SceneRun& run, std::size_t each = 1);
 
-/// Those of the input.
+/// The input's techniques that draw silhouettes.
 std::vector<std::string> techniques_with_silhouettes(const SceneRun& run);
 
 /// With the exact filter.

@@ -18,8 +18,8 @@ vec4 distance_field_to(float squared, float aside, vec4 drop) {
 void relievo_bake(ivec2 texel) {
   ivec2 extent = textureSize(relievo_height_map, 0);
   int layer = relievo_bake_layer();
-  // A distance may only be too short: that of a place no higher than the layer, which a quotient may be by 3 ulp, 2^-23.
-  precise vec4 height = (float(layer) + vec4(0.5, 1.5, 2.5, 3.5)) / float(distance_field_layers) * 0.9999996;
+  // A quotient, 2.5 ulp, and the product, 1, may be 3.5 * 2^-23 too high; from a lower place distances are only shorter.
+  precise vec4 height = (float(layer) + vec4(0.5, 1.5, 2.5, 3.5)) / float(distance_field_layers) * 0.9999995;
   precise float texel_size = 1.0 / (float(max(extent.x, extent.y)) * distance_field_scale);
   precise float aside = texel_size * texel_size;
   vec4 shortest = distance_field_to(0.0, aside, height - relievo_max_pyramid_at(texel, 0));
@@ -44,7 +44,7 @@ void relievo_bake(ivec2 texel) {
       relievo_walk_pass(walk);
     }
   }
-  // In ulp, as Vulkan allows them: 5 of all that is under the root, 7 of the root.
+  // A distance may only be too short. In ulp, 2^-23: 5 of what the square is made of (half of its 10), 6.5 of the root, 1 of this.
   precise vec4 distance = sqrt(mix(shortest, vec4(0.0), equal(limit, vec4(0.0)))) * 0.9999985;
   for (int k = 0; k < 4; ++k) relievo_bake_write_layer(texel, layer + k, 0, distance[k]);
 }

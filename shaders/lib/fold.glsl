@@ -7,7 +7,7 @@
 // clamp, clip: beyond the edge nothing changes along the axis; the outermost cell sees all that the cells beyond it see.
 #include "ray.glsl"
 
-// x / extent, rounded down, for whole x of at most 2^21 in size: half a unit keeps the rounding of the product away from the
+// x / extent, rounded down, for whole x of at most 1.1e6 in size: half a unit keeps the rounding of the product away from the
 // whole numbers.
 vec2 relievo_fold_periods(vec2 x, vec2 period) {
   precise vec2 periods = floor((x + 0.5) * (1.0 / period));
@@ -51,7 +51,7 @@ int relievo_quadrant(vec2 heading) { return (heading.x < 0.0 ? 1 : 0) + (heading
 ivec2 relievo_heading(int quadrant) { return ivec2((quadrant & 1) != 0 ? -1 : 1, (quadrant & 2) != 0 ? -1 : 1); }
 
 // The same for texels. Whole numbers in floats, since integer division is slow where it is emulated: exact up to
-// 2^21 texels, and within the map for all.
+// 1.1e6 texels, and within the map for all.
 ivec2 relievo_fold_texel(vec2 texel, vec2 extent) {
   vec2 phase = relievo_fold_to_first_period(texel, extent);
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_MIRROR

@@ -11,7 +11,7 @@ int relievo_sector_slice(vec2 direction, int sectors) {
   int cuts = sectors / 8;
   vec2 size = abs(direction);
   float greater = max(size.x, size.y);
-  float ratio = greater > 0.0 ? min(size.x, size.y) / greater : 0.0;
+  float ratio = greater > 1.0e-30 ? min(size.x, size.y) / greater : 0.0;  // finite, for the integer's sake
   return (size.y > size.x ? cuts : 0) + min(int(ratio * float(cuts)), cuts - 1);
 }
 

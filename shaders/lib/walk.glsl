@@ -38,7 +38,7 @@ const float RELIEVO_WALK_FAST = 1.0e30;  // texels a unit of t
 // the far side, where a point below the surface is a hit.
 const float RELIEVO_WALK_MARGIN = 1.0e-6;
 const float RELIEVO_WALK_NEVER = 1.0e30;  // s of an event that does not occur; times 1024 it is still finite
-const float RELIEVO_WALK_FAR = 1.0e6;     // texels: cells are folded exactly up to twice as far
+const float RELIEVO_WALK_FAR = 1.0e6;     // texels: cells are folded exactly a tenth further
 
 // a · b as a sum of two floats (Dekker 1971), for |a|, |b| < 2^100.
 void relievo_two_product(vec2 a, vec2 b, out vec2 product, out vec2 error) {

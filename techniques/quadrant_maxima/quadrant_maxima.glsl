@@ -135,7 +135,7 @@ bool quadrant_maxima_is_blocked(Walk walk, Glide glide, GlidePace pace, inout in
     s = intBitsToFloat(free) + glide.margin;
     // The next step waits for this: one comparison, needed <= free < limit.
     int limit = steps > 0 ? max(left, needed) : needed;
-    goes_on = uint(free - needed) < uint(limit - needed);
+    goes_on = uint(free) - uint(needed) < uint(limit) - uint(needed);
   } while (goes_on);
   bool is_blocked = free < needed;
   s = is_blocked ? from : intBitsToFloat(max(free, needed)) + glide.margin;

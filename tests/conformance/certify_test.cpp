@@ -107,6 +107,22 @@ TEST(Certify, ConesHoldAsFarAsTheyReachAtMost) {
   }
 }
 
+/// 65535 / 65535 may be more than 1.
+TEST(Certify, MapsOfTheGreatestHeightStayWithinTheirRange) {
+  for (const auto& format : registry().maps.at("height").parameters) {
+    if (format.name != "format") continue;
+    for (std::size_t k = 0; k < format.choices.size(); ++k) {
+      for (const std::string& name : certified_maps())
+        EXPECT_FALSE(baked(constant_map(8, 8, 1), name, {{"height.format", static_cast<double>(k)}}, "vulkan_loose")
+                         .texels.floats()
+                         .empty())
+            << name << " " << format.choices[k];
+    }
+    return;
+  }
+  ADD_FAILURE() << "heights come in one format only";
+}
+
 /// Squares of such rises are no floats any more, and a zero's sign is anyone's guess.
 TEST(Certify, ConesOfTinyRisesAreFinite) {
   HeightMap tiny = white_noise_map(9, 7);

@@ -78,6 +78,32 @@ TEST(CompileEmit, NothingInEsslIsBelowHighp) {
   }
 }
 
+/// What else would sums that hold what rounding loses be good for?
+TEST(CompileEmit, WhatIsPreciseIsSoWhereverTheLanguageHasTheWord) {
+  const char* const text = R"(
+layout(std430, set = 0, binding = 0) buffer Result { vec4 result[]; };
+void main() {
+  vec4 a = result[0], b = result[1];
+  PRECISE vec4 sum = a + b;
+  PRECISE vec4 lost = b - (sum - a);
+  result[gl_GlobalInvocationID.x] = lost;
+})";
+  for (const bool is_precise : {true, false}) {
+    std::string source = std::string("#define PRECISE ") + (is_precise ? "precise" : "") + text;
+    const auto compiled = compile_for(testing::compute_program(source), kWithCompute);
+    ASSERT_TRUE(compiled) << compiled.error().message;
+    EXPECT_EQ(testing::check_program(*compiled), "");
+    const auto& texts = compiled->shaders[0].text;
+    for (const char* target : {"glsl-430", "glsl-450", "essl-310", "hlsl-5.0", "hlsl-5.1", "hlsl-6.0"})
+      EXPECT_EQ(texts.at(target).find("precise vec4") != std::string::npos ||
+                    texts.at(target).find("precise float4") != std::string::npos ||
+                    texts.at(target).find("precise highp vec4") != std::string::npos,
+                is_precise)
+          << texts.at(target);
+    EXPECT_EQ(texts.at("essl-310").find("#extension GL_EXT_gpu_shader5 : enable") != std::string::npos, is_precise);
+  }
+}
+
 TEST(CompileEmit, VaryingsAreNamedByTheStageThatWritesThem) {
   const auto compiled = compile_for(testing::prism_sample(), {"glsl-330"});
   ASSERT_TRUE(compiled) << compiled.error().message;

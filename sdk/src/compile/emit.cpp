@@ -20,7 +20,7 @@ Language family_of(const Target& target) {
 /// Old before new, so that what an old version refuses is refused first; GLSL's `precise` parts it, see emit_glsl.cpp.
 bool is_emitted_before(const Target& a, const Target& b) {
   const auto order = [](const Target& target) {
-    const bool has_precise = target.language == Language::glsl && target.version >= 400;
+    const bool has_precise = target.version >= (target.language == Language::essl ? 310 : 400);
     return std::tuple(has_precise, target.language, target.version);
   };
   return order(a) < order(b);

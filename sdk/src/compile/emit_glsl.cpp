@@ -65,9 +65,24 @@ void check_names(const CompilerGLSL& compiler, const ShaderModule& module) {
   }
 }
 
-/// Whether this version spells out that arithmetic must stay as written.
+/// Whether this version spells out that arithmetic must stay as written. GLSL 330 could by GL_ARB_gpu_shader5, but
+/// glslang does not know the word there.
 bool has_precise(const CompilerGLSL::Options& options) {
-  return options.es ? options.version >= 320 : options.version >= 400;
+  return options.version >= (options.es ? 310u : 400u);
+}
+
+/// Of the versions that have it.
+bool has_precise_by_extension(const CompilerGLSL::Options& options) {
+  return options.es && options.version < 320;
+}
+
+bool uses_precise(const ShaderModule& module) {
+  bool found = false;
+  for_each_instruction(*module.spirv, [&](const SpirvInstruction& instruction) {
+    found = found || (instruction.opcode == spv::OpDecorate &&
+                      instruction.operands[1] == static_cast<std::uint32_t>(spv::DecorationNoContraction));
+  });
+  return found;
 }
 
 /// Whether this version chooses between vectors component by component with mix(); older ones read each component
@@ -127,7 +142,8 @@ VersionDependence find_version_dependence(const ShaderModule& module) {
 /// emitted.
 class GlslTexts : public CompilerGLSL {
  public:
-  using CompilerGLSL::CompilerGLSL;
+  GlslTexts(const spirv_cross::ParsedIR& parsed, bool uses_precise)
+      : CompilerGLSL(parsed), uses_precise_(uses_precise) {}
 
   /// `keep_functions`: they read as in the version before, if that one needed no extension.
   std::string emit(const Options& wanted, bool keep_functions) {
@@ -161,7 +177,18 @@ class GlslTexts : public CompilerGLSL {
     return buffer.str();
   }
 
+  /// Drivers without the extension compile what is `precise` as they compile the rest.
+  void add_extension_of_precise() {
+    header_lines.clear();
+    if (!uses_precise_ || !has_precise(options) || !has_precise_by_extension(options)) return;
+    for (const char* line :
+         {"#ifdef GL_EXT_gpu_shader5", "#extension GL_EXT_gpu_shader5 : enable", "#else", "#define precise", "#endif"})
+      header_lines.push_back(line);
+  }
+
   void emit_header() override {
+    backend.support_precise_qualifier = has_precise(options);
+    add_extension_of_precise();
     CompilerGLSL::emit_header();
     functions_start_ = 0;
     if (!keeps_functions_) return;
@@ -175,6 +202,7 @@ class GlslTexts : public CompilerGLSL {
     CompilerGLSL::emit_function_prototype(function, flags);
   }
 
+  bool uses_precise_;
   bool analysed_ = false;
   bool keeps_functions_ = false;
   std::string functions_;  ///< of the version before
@@ -200,7 +228,7 @@ void emit_glsl(std::span<const Target> targets, const ShaderModule& module, cons
     // Which expressions need a variable depends on how vectors are chosen; and a struct taken apart stays so.
     const bool chooses_otherwise = depends.selects_vectors && has_boolean_mix(options) != has_boolean_mix(before);
     const bool is_new = !compiler || chooses_otherwise || depends.passes_structs;
-    if (is_new) prepare(compiler.emplace(*module.ir), module, layout, neighbours);
+    if (is_new) prepare(compiler.emplace(*module.ir, uses_precise(module)), module, layout, neighbours);
     const bool reads_alike = options.es == before.es && has_precise(options) == has_precise(before);
     std::string text = compiler->emit(options, !is_new && reads_alike && !depends.any());
     before = options;

@@ -6,7 +6,7 @@ float relievo_height_of(vec4 texel) {
 #if height_format == height_format_alpha
   return texel.a;
 #elif height_format == height_format_red_green
-  return (texel.r * 65280.0 + texel.g * 255.0) / 65535.0;
+  return min((texel.r * 65280.0 + texel.g * 255.0) / 65535.0, 1.0);  // a quotient may be above 1
 #else
   return texel.r;
 #endif
@@ -26,7 +26,7 @@ vec4 relievo_height_gather(vec2 uv) {
   return textureGather(relievo_height_map, uv, 3).wzxy;
 #elif height_format == height_format_red_green
   vec4 high = textureGather(relievo_height_map, uv, 0), low = textureGather(relievo_height_map, uv, 1);
-  return ((high * 65280.0 + low * 255.0) / 65535.0).wzxy;
+  return min((high * 65280.0 + low * 255.0) / 65535.0, vec4(1.0)).wzxy;
 #else
   return textureGather(relievo_height_map, uv).wzxy;
 #endif

@@ -39,7 +39,7 @@ void quadrant_maxima_pack(ivec2 texel) {
   if (heading.x < 0) corners = corners.yxwz;
   if (heading.y < 0) corners = corners.zwxy;
   vec4 packed = 256.0 * quadrant_maxima_bytes(windows) + quadrant_maxima_bytes(corners);
-  for (int k = 0; k < 4; ++k) relievo_bake_write(texel, k, packed[k] / 65535.0);
+  for (int k = 0; k < 4; ++k) relievo_bake_write(texel, k, min(packed[k] / 65535.0, 1.0));  // a quotient may be above 1
 }
 
 void relievo_bake(ivec2 texel) {

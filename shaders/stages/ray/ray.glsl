@@ -49,10 +49,15 @@ float ray_n_dot_v(vec3 direction) {
   return metric.z / size;
 }
 
+// A driver may take a denormal for 0 in one operation and not in the next.
+vec3 ray_without_denormals(vec3 direction) {
+  return mix(direction, vec3(0.0), lessThan(floatBitsToUint(direction) & 0x7fffffffu, uvec3(0x00800000u)));
+}
+
 void main() {
   if (ray_index() >= ray_count.x) return;
   vec4 origin_limit = ray_read(0);
-  vec3 direction = ray_read(1).xyz;
+  vec3 direction = ray_without_denormals(ray_read(1).xyz);
   Ray ray = Ray(origin_limit.xyz, direction, origin_limit.w, ray_n_dot_v(direction));
   Hit hit = Hit(RELIEVO_MISS, 0.0, ray.origin);
   bool is_valid = relievo_is_valid(ray);

@@ -204,7 +204,8 @@ typedef struct relievo_binding {
   relievo_string map;  /* that belongs there: "height", or empty */
   relievo_resource_kind kind;
   int32_t set, binding;
-  int32_t gl_slot; /* in OpenGL's namespace of the kind */
+  int32_t gl_slot;     /* in OpenGL's namespace of the kind */
+  int32_t is_filtered; /* sampled textures: some shader samples it; else any filter of the sampler will do */
 } relievo_binding;
 
 relievo_status relievo_program_binding_count(const relievo_program* program, size_t* count, relievo_error* error);

@@ -6,11 +6,12 @@
 
 // Cells of the node that lie ahead of this one, along each axis; nodes end where the map does. What a clamped map has
 // beyond its edge is bounded by the outermost nodes, without end.
-vec2 exact_cells_ahead(FoldedCell folded, ivec2 node, int level, vec2 extent) {
+vec2 exact_cells_ahead(Walk walk, vec2 cell, FoldedCell folded, ivec2 node, int level) {
+  vec2 extent = walk.extent;
   vec2 first = vec2(node << level);
   vec2 last = min(vec2((node + 1) << level), extent) - 1.0;
   bvec2 forward = greaterThanEqual(folded.heading, vec2(0.0));
-  vec2 ahead = mix(folded.cell - first, last - folded.cell, vec2(forward));
+  vec2 ahead = relievo_walk_same_ahead(walk, cell) + mix(folded.cell - first, last - folded.cell, vec2(forward));
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLAMP || RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLIP
   bvec2 outermost = bvec2(forward.x ? last.x == extent.x - 1.0 : node.x == 0, forward.y ? last.y == extent.y - 1.0 : node.y == 0);
   ahead = mix(ahead, vec2(RELIEVO_MAX_TRAVEL * 16384.0), vec2(outermost));
@@ -24,7 +25,7 @@ float exact_free(Walk walk, WalkPlace place, float fall, int level, out float bo
   ivec2 node = ivec2(folded.cell) >> level;
   float greatest = relievo_max_pyramid_at(node, level);
   vec2 behind = abs(walk.behind_at_zero - place.fraction);
-  precise vec2 borders = (exact_cells_ahead(folded, node, level, walk.extent) + (1.0 - behind)) * walk.pace;
+  precise vec2 borders = (exact_cells_ahead(walk, place.cell, folded, node, level) + (1.0 - behind)) * walk.pace;
   precise float sink = (place.height - greatest) * fall;
   border = min(borders.x, borders.y);
   return min(border, sink);

@@ -53,17 +53,18 @@ Glide quadrant_maxima_glide(Walk walk, vec2 s, WalkPlace place) {
   glide.cell = cell;
   precise vec2 period = (walk.extent - 0.5) * walk.pace;
   float reach = min(min(period.x, period.y), QUADRANT_MAXIMA_REACH);
-  glide.left = min(relievo_walk_left(walk, s), reach);
-  precise float height = place.height - (QUADRANT_MAXIMA_ROUNDING * glide.left + QUADRANT_MAXIMA_HEIGHT);
+  float left = relievo_walk_left(walk, s);
+  glide.left = min(left, reach);
+  precise float longest = min(left, reach + min(u.w, v.w));  // with the step that ends the glide
+  precise float height = place.height - (QUADRANT_MAXIMA_ROUNDING * longest + QUADRANT_MAXIMA_HEIGHT);
   precise float top = 1.0 + RELIEVO_QUADRANT_MAXIMA_UNIT * height;
   glide.top = top;
   glide.margin = QUADRANT_MAXIMA_MARGIN * max(glide.left, 16.0);
   return glide;
 }
 
-// The cell that lies so many cells ahead, folded back into the map.
-QuadrantMaxima quadrant_maxima_ahead(Walk walk, Glide glide, ivec2 passed) {
-  ivec2 cell = glide.base + (passed ^ glide.against);
+// What the map has of a cell, folded back into it.
+QuadrantMaxima quadrant_maxima_of(Walk walk, Glide glide, ivec2 cell) {
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_REPEAT
   // One of the two is within the map. The other is larger, or negative, which is larger still without a sign.
   cell = ivec2(min(uvec2(cell), uvec2(cell - glide.turn)));
@@ -95,11 +96,16 @@ int quadrant_maxima_clears(vec4 corners, vec3 place, vec3 way) {
 int quadrant_maxima_free(Walk walk, Glide glide, GlidePace pace, float s, out int border) {
   precise vec2 at = glide.ahead + s * pace.slope;
   ivec2 passed = ivec2(at);
-  QuadrantMaxima maxima = quadrant_maxima_ahead(walk, glide, passed);
+  ivec2 here = glide.base + (passed ^ glide.against);
+  QuadrantMaxima maxima = quadrant_maxima_of(walk, glide, here);
 
   precise vec2 before = vec2(passed) * walk.pace;
   precise vec4 u = glide.u + before.x, v = glide.v + before.y;
   precise vec2 cell = glide.cell + before;
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLAMP
+  precise vec2 same = cell + min(relievo_walk_same_ahead(walk, vec2(here)), relievo_quadrant_maxima_widths().w - 1.0) * walk.pace;
+  cell = same;
+#endif
   precise vec4 sink = (glide.top + s * pace.climb - maxima.windows) * pace.fall;
   ivec4 free = min(min(floatBitsToInt(u), floatBitsToInt(v)), floatBitsToInt(sink));
   border = min(floatBitsToInt(cell.x), floatBitsToInt(cell.y));
@@ -161,6 +167,14 @@ Hit quadrant_maxima_trace(Ray ray) {
       // The next glide starts here and not behind the cell, so that it need not wait for the solution to be prepared.
       float border = relievo_search_cell(walk, place, relievo_cell_corners_at(place.cell, walk.extent), search);
       on = border + RELIEVO_WALK_MARGIN;
+#if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLAMP
+      // Beyond the edge that may be further than a glide goes.
+      if (!(search.hit < RELIEVO_WALK_NEVER)) {
+        search.s = relievo_walk_on(search.s, on);
+        place = relievo_walk_place(walk, search.s);
+        on = 0.0;
+      }
+#endif
     }
     search.ends = relievo_walk_left(walk, search.s) <= on;
   }

@@ -72,6 +72,29 @@ TEST(Trace, AFineLinearSearchFindsEveryFirstHitThatLastsAStep) {
   EXPECT_GT(certain, 3000) << "too few rays are judged for the figures above to mean anything";
 }
 
+/// Beyond the edge cells are all the same along an axis; along the other, a ray may take tens of tiles to leave one.
+TEST(Trace, ExactTechniquesCrossWhatLiesBeyondTheEdgeInFewSteps) {
+  constexpr int few = 1500;  // of the 5000 cells that a ray crosses, each a step or three
+  for (const auto& [width, height] : {std::pair{256, 16}, std::pair{3, 256}, std::pair{256, 256}}) {
+    const HeightMap map = with_address(white_noise_map(width, height), AddressMode::clamp);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 400; ++i) {
+      const double heading = 0.0157 * i, du = std::cos(heading), dv = std::sin(heading), h = 0.0025 * i;
+      rays.push_back({0.5 - 20 * du, 0.5 + 0.001 * i - 20 * dv, h, du, dv, i % 2 ? 0 : -0.001, 20});
+    }
+    const std::vector<Hit> truth = Oracle(map).trace(rays);
+    for (const std::string& name : both_backends) {
+      for (const std::string technique : exact_techniques) {
+        const auto hits = trace_on(name, map, rays, request_of(technique, {{technique + ".max_steps", few}}));
+        const ErrorFigures error = compare_hits(truth, hits, width, height);
+        EXPECT_EQ(error.exhausted + error.missed + error.false_hit + error.wrong_layer, 0U)
+            << technique << " on " << name << ", " << width << "x" << height;
+        EXPECT_GT(error.judged, 380U);
+      }
+    }
+  }
+}
+
 TEST(Trace, TheSameJudgementCatchesSeededFaults) {
   const HeightMap map = smooth_noise_map(33, 20);
   const std::vector<Ray> rays = bounded_rays(map, 400, 7);

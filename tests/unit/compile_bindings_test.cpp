@@ -116,6 +116,45 @@ void main() {
   EXPECT_EQ(testing::check_program(*compiled), "");
 }
 
+TEST(CompileBindings, TellsWhatIsSampledFromWhatIsOnlyFetched) {
+  ComposedProgram program = fragment_program(R"(
+layout(location = 0) out vec4 color;
+layout(set = 0, binding = 0) uniform sampler2D sampled;
+layout(set = 0, binding = 1) uniform sampler2D fetched;
+layout(set = 0, binding = 2) uniform sampler2D gathered;
+layout(set = 0, binding = 3) uniform sampler2D passed_on;
+layout(set = 0, binding = 4) uniform sampler2D passed_and_fetched;
+layout(set = 0, binding = 5) uniform sampler3D graded;
+layout(set = 0, binding = 6) uniform sampler2D in_another_stage;
+layout(set = 0, binding = 7) uniform sampler2D several[2];
+vec4 twice(sampler2D map) { return texture(map, vec2(0.5)) + texture(map, vec2(0.25)); }
+vec4 once_more(sampler2D map) { return twice(map) * 0.5; }
+vec4 first(sampler2D map) { return texelFetch(map, ivec2(0), 0); }
+void main() {
+  color = texture(sampled, vec2(0.5)) + texelFetch(fetched, ivec2(0), 0) + textureGather(gathered, vec2(0.5));
+  color += once_more(passed_on) + first(passed_and_fetched) + vec4(textureSize(fetched, 0).x);
+  color += textureGrad(graded, vec3(0.5), vec3(0.1), vec3(0.1)) + texelFetch(in_another_stage, ivec2(1), 0);
+  color += texture(several[1], vec2(0.5));
+}
+)");
+  program.shaders[0].text = R"(#version 450
+layout(set = 0, binding = 6) uniform sampler2D in_another_stage;
+void main() { gl_Position = textureLod(in_another_stage, vec2(0.5), 0.0); }
+)";
+  for (const bool optimize : {true, false}) {
+    CompileOptions options;
+    options.optimize = optimize;
+    const auto compiled = compile(program, {}, options);
+    ASSERT_TRUE(compiled) << compiled.error().message;
+    std::vector<bool> filtered;
+    for (const BindingSlot& slot : compiled->bindings) filtered.push_back(slot.is_filtered);
+    EXPECT_THAT(filtered, ::testing::ElementsAre(true, false, false, true, false, true, true, true));
+    const auto reflection = nlohmann::json::parse(compiled->reflection);
+    EXPECT_EQ(reflection["bindings"][1]["filtered"], false);
+    EXPECT_EQ(reflection["bindings"][3]["filtered"], true);
+  }
+}
+
 TEST(CompileBindings, PushConstantsArePinnedAfterTheUniformBlocks) {
   const auto compiled = compile_for(compute_program(R"(
 layout(set = 0, binding = 0, std140) uniform Parameters { vec4 a; } parameters;

@@ -343,5 +343,41 @@ TEST(ComposeBake, EachPhaseIsAProgramOfItsOwn) {
   }
 }
 
+/// Names of the textures that a program samples, rather than fetches.
+std::vector<std::string> filtered_in(const Result<ComposedProgram>& composed) {
+  EXPECT_TRUE(composed) << format(composed.error());
+  const auto compiled = compile(*composed, {});
+  EXPECT_TRUE(compiled) << format(compiled.error());
+  std::vector<std::string> names;
+  for (const BindingSlot& slot : compiled->bindings) {
+    if (slot.is_filtered) names.push_back(slot.name);
+  }
+  return names;
+}
+
+TEST(ComposeFilters, NoBakeNeedsATextureUnitThatFilters) {
+  for (const auto& [name, map] : registry().maps) {
+    if (map.module.empty()) continue;
+    EXPECT_THAT(filtered_in(compose_bake(registry(), name, AddressMode::repeat)), testing::IsEmpty()) << name;
+  }
+}
+
+std::vector<std::string> filtered_by(const std::string& technique, HeightFilter filter) {
+  Permutation permutation = ray_of(technique);
+  permutation.filter = filter;
+  return filtered_in(compose(registry(), permutation));
+}
+
+TEST(ComposeFilters, TheExactFilterSamplesNothingButNormals) {
+  for (const auto& [name, technique] : registry().techniques) {
+    if (technique.technique_class == TechniqueClass::reference) continue;
+    EXPECT_THAT(filtered_by(name, HeightFilter::exact), testing::Each("relievo_normal_map")) << name;
+    if (technique.first_hit != FirstHit::always) continue;
+    EXPECT_THAT(filtered_by(name, HeightFilter::hardware), testing::IsEmpty()) << name;
+  }
+  EXPECT_THAT(filtered_by("relief", HeightFilter::hardware), testing::ElementsAre("relievo_height_map"));
+  EXPECT_THAT(filtered_by("sphere_tracing", HeightFilter::hardware), testing::Contains("relievo_distance_field_map"));
+}
+
 }  // namespace
 }  // namespace relievo::test

@@ -280,6 +280,7 @@ const Setter setters[] = {
     {"BindingSlot.binding", [](Job& j) { j.programs[0].bindings[0].binding = 4; }},
     {"BindingSlot.name", [](Job& j) { j.programs[0].bindings[0].name = "Other"; }},
     {"BindingSlot.gl_slot", [](Job& j) { j.programs[0].bindings[0].gl_slot = 5; }},
+    {"BindingSlot.is_filtered", [](Job& j) { j.programs[0].bindings[0].is_filtered = true; }},
     {"SpecializationValue.id", [](Job& j) { j.programs[0].constants[0].id = 4; }},
     {"SpecializationValue.bits", [](Job& j) { j.programs[0].constants[0].bits = 1; }},
     {"Buffer.name", [](Job& j) { j.buffers[0].name = "other"; }},
@@ -466,8 +467,8 @@ TEST(ParseJob, RejectsAnotherSchemaVersion) {
   const std::string key = "relievo_job";
   auto version = std::search(bytes_of_job.begin(), bytes_of_job.end(), key.begin(), key.end()) +
                  static_cast<std::ptrdiff_t>(key.size());
-  ASSERT_EQ(*version, 1);
-  *version = 2;
+  ASSERT_EQ(*version, 2);
+  *version = 3;
   const Result<Job> parsed = parse_job(bytes_of_job);
   ASSERT_FALSE(parsed);
   EXPECT_THAT(parsed.error().message, HasSubstr("schema version"));

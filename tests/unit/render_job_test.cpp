@@ -123,6 +123,28 @@ TEST(RenderJob, RequestsShareProgramsMapsMeshesAndDepth) {
   EXPECT_EQ(twice->programs.size(), 1U);
 }
 
+/// Many devices cannot filter 32-bit floats.
+TEST(RenderJob, OnlyWhatIsSampledIsFiltered) {
+  const auto registry = load_registry();
+  MapSet maps = flat_maps();
+  add_normal_map(maps);
+  const auto filter_of = [&](const RenderRequest& request, const std::string& map) {
+    const auto job = make_render_job(*registry, Scene{}, make_plane(), maps, request, "spirv");
+    EXPECT_TRUE(job) << format(job.error());
+    const auto found =
+        std::find_if(job->textures.begin(), job->textures.end(), [&](const Texture& one) { return one.name == map; });
+    return found->sampler.min_mag;
+  };
+  RenderRequest request = request_of("relief");
+  request.filter = HeightFilter::exact;
+  EXPECT_EQ(filter_of(request, "height"), TexelFilter::nearest);
+  EXPECT_EQ(filter_of(request, "normal"), TexelFilter::linear);
+  request.filter = HeightFilter::hardware;
+  EXPECT_EQ(filter_of(request, "height"), TexelFilter::linear);
+  request.aov = Aov::uv;
+  EXPECT_EQ(filter_of(request, "normal"), TexelFilter::nearest) << "a uv needs no normal";
+}
+
 TEST(RenderJob, NoRequestsAreAJobThatDoesNothing) {
   const auto registry = load_registry();
   const auto job =

@@ -82,6 +82,9 @@ struct BindingSlot {
   int set = 0, binding = 0;
   std::string name;  ///< the GLSL name: of the block for buffers, of the uniform for textures
   int gl_slot = 0;
+  /// Some shader samples the texture. Else the sampler's filter does not matter, and devices that cannot filter the
+  /// format will do.
+  bool is_filtered = false;
   friend bool operator==(const BindingSlot&, const BindingSlot&) = default;
 };
 

@@ -81,8 +81,8 @@ relievo_binding describe(const BindingSlot& slot, const ComposedProgram& compose
     return candidate.set == slot.set && candidate.binding == slot.binding && candidate.sampler == slot.name;
   });
   const std::string_view name = map == composed.maps.end() ? std::string_view() : std::string_view(map->map);
-  return {view(slot.name), view(name),   static_cast<relievo_resource_kind>(slot.kind),
-          slot.set,        slot.binding, slot.gl_slot};
+  return {view(slot.name), view(name),      static_cast<relievo_resource_kind>(slot.kind), slot.set, slot.binding,
+          slot.gl_slot,    slot.is_filtered};
 }
 
 relievo_program_parameter describe(const ParameterSlot& slot) {

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
+
+#include "compile/filtered.hpp"
 
 namespace relievo {
 
@@ -25,13 +28,15 @@ int array_count(const spirv_cross::SPIRType& type) {
   return count;
 }
 
-BoundResource describe(const ShaderModule& module, const spirv_cross::Resource& resource, ResourceKind kind) {
+BoundResource describe(const ShaderModule& module, const spirv_cross::Resource& resource, ResourceKind kind,
+                       const std::set<std::uint32_t>& filtered) {
   const auto& reflection = *module.reflection;
   BoundResource entry;
   entry.slot.kind = kind;
   entry.slot.set = static_cast<int>(reflection.get_decoration(resource.id, spv::DecorationDescriptorSet));
   entry.slot.binding = static_cast<int>(reflection.get_decoration(resource.id, spv::DecorationBinding));
   entry.slot.name = resource.name;
+  entry.slot.is_filtered = kind == ResourceKind::sampled_texture && filtered.contains(resource.id);
   entry.count = array_count(reflection.get_type(resource.type_id));
   entry.stages = {module.stage};
   if (kind == ResourceKind::storage_buffer) {
@@ -53,6 +58,7 @@ Status merge_entry(Entries& entries, BoundResource entry, std::string_view key) 
                          to_string(other.slot.kind), other.slot.name, to_string(entry.slot.kind), entry.slot.name));
   }
   other.read_only = other.read_only && entry.read_only;
+  other.slot.is_filtered = other.slot.is_filtered || entry.slot.is_filtered;
   if (other.stages.back() != entry.stages.front()) other.stages.push_back(entry.stages.front());
   return {};
 }
@@ -64,9 +70,10 @@ Status collect(Entries& entries, const ShaderModule& module, std::string_view ke
                                                  {&resources.storage_buffers, ResourceKind::storage_buffer},
                                                  {&resources.sampled_images, ResourceKind::sampled_texture},
                                                  {&resources.storage_images, ResourceKind::storage_texture}};
+  const std::set<std::uint32_t> filtered = filtered_variables(*module.spirv);
   for (const auto& [list, kind] : kinds) {
     for (const spirv_cross::Resource& resource : *list) {
-      if (auto merged = merge_entry(entries, describe(module, resource, kind), key); !merged) return merged;
+      if (auto merged = merge_entry(entries, describe(module, resource, kind, filtered), key); !merged) return merged;
     }
   }
   return {};

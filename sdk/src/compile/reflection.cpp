@@ -90,6 +90,7 @@ Json bindings(const BindingLayout& layout, std::span<const Target> targets) {
     if (slot.kind == ResourceKind::storage_buffer || slot.kind == ResourceKind::storage_texture) {
       json["read_only"] = entry.read_only;
     }
+    if (slot.kind == ResourceKind::sampled_texture) json["filtered"] = slot.is_filtered;
     const Json spirv = {{"set", slot.set}, {"binding", slot.binding}};
     json["targets"] = target_slots(targets, spirv, slot.gl_slot, entry.hlsl, entry.msl);
     all.push_back(std::move(json));

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
+#include <variant>
 
 namespace relievo {
 
@@ -189,6 +191,22 @@ void keep_contract(const ShaderProgram& program, std::vector<ResourceBinding>& r
     return std::none_of(program.bindings.begin(), program.bindings.end(),
                         [&](const BindingSlot& s) { return s.set == r.set && s.binding == r.binding; });
   });
+}
+
+void keep_filters(Job& job) {
+  std::set<int> filtered;
+  const auto add = [&](int program, const std::vector<ResourceBinding>& resources) {
+    for (const BindingSlot& slot : job.programs[static_cast<std::size_t>(program)].bindings) {
+      for (const ResourceBinding& bound : resources) {
+        if (slot.is_filtered && slot.set == bound.set && slot.binding == bound.binding) filtered.insert(bound.resource);
+      }
+    }
+  };
+  for (const Command& command : job.commands)
+    std::visit([&](const auto& one) { add(one.program, one.resources); }, command);
+  for (std::size_t k = 0; k < job.textures.size(); ++k) {
+    if (!filtered.contains(static_cast<int>(k))) job.textures[k].sampler.min_mag = TexelFilter::nearest;
+  }
 }
 
 void append_messages(const JobResult& result, std::vector<std::string>* messages) {

@@ -206,6 +206,7 @@ Result<Job> make_render_job(const Registry& registry, const Scene& scene, std::s
     JobMesh buffers(mesh, scene, job);
     for (const DrawPlan& plan : plans) add_draw(plan, buffers.tessellated(plan), depth, scene.image, job);
   }
+  keep_filters(job);
   return job;
 }
 

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::json;
 
 // Raise it when a field is added, removed or changes its meaning.
-constexpr int schema_version = 1;
+constexpr int schema_version = 2;
 
 template <class Archive>
 void fields(Archive& a, SamplerState& s) {
@@ -38,6 +38,7 @@ void fields(Archive& a, Buffer& b) {
 template <class Archive>
 void fields(Archive& a, BindingSlot& s) {
   a("kind", s.kind), a("set", s.set), a("binding", s.binding), a("name", s.name), a("gl_slot", s.gl_slot);
+  a("is_filtered", s.is_filtered);
 }
 
 template <class Archive>

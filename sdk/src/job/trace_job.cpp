@@ -259,6 +259,7 @@ Result<Job> make_trace_job(const Registry& registry, const MapSet& maps, std::sp
   if (rounds.warm_up && !round.empty())
     job.commands.assign(round.begin(), round.begin() + static_cast<std::ptrdiff_t>(requests.size()));
   for (int i = 0; i < rounds.timed; ++i) job.commands.insert(job.commands.end(), round.begin(), round.end());
+  keep_filters(job);
   return job;
 }
 

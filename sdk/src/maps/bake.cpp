@@ -119,6 +119,7 @@ Result<Job> bake_job(const PhasePrograms& programs, const MapDescriptor& descrip
                        groups_of(slab.count, descriptor.layers_at_once)};
     job.commands.emplace_back(std::move(dispatch));
   }
+  keep_filters(job);
   return job;
 }
 

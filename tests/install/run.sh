@@ -27,6 +27,10 @@ for header in "$root"/sdk/include/relievo/*.hpp; do
 done
 [ -f "$prefix/include/relievo.h" ] || fail "relievo.h is not installed"
 
+# What the library was made of must not meet what a program links itself.
+foreign=$(nm -D --defined-only "$library" | awk '$3 !~ /^_Z.*7relievo|^relievo_/ && shown++ < 5 { print $3 }')
+[ -z "$foreign" ] || fail "the library shows names that are not its own: $foreign"
+
 echo "found by CMake:"
 cmake -S "$here" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
 cmake --build "$work/cmake" >/dev/null || cmake --build "$work/cmake"

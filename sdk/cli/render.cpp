@@ -1,8 +1,7 @@
 /// relievo render: a picture of a scene.
 #include <fmt/format.h>
-#include <algorithm>
-#include <cmath>
 
+#include "aov_picture.hpp"
 #include "common.hpp"
 #include "relievo/image.hpp"
 
@@ -17,25 +16,6 @@ struct RenderOptions {
   bool validation = false;
 };
 
-/// Numbers become something to look at: depth and steps by their range, normals from [-1,1], statuses in fifths.
-Image for_png(Image image, Aov aov) {
-  float largest = 0;
-  for (std::size_t i = 0; i < image.pixels.size(); i += 4) {
-    if (image.pixels[i + 3] > 0) largest = std::max(largest, image.pixels[i]);
-  }
-  for (std::size_t i = 0; i < image.pixels.size(); i += 4) {
-    float* p = &image.pixels[i];
-    for (int c = 0; c < 3; ++c) {
-      if (aov == Aov::normal || aov == Aov::ray_direction) p[c] = 0.5f + 0.5f * p[c];
-      if (aov == Aov::uv) p[c] = p[c] - std::floor(p[c]);
-      if (aov == Aov::steps) p[c] = largest > 0 ? p[0] / largest : 0;
-      if (aov == Aov::status) p[c] = p[0] / 4;
-    }
-    p[3] = 1;
-  }
-  return image;
-}
-
 Status write_image(const RenderResult& result, Aov aov, const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   if (extension == ".exr") return write_exr(path, result.image);
@@ -43,7 +23,7 @@ Status write_image(const RenderResult& result, Aov aov, const std::string& path)
     return fail(ErrorCode::usage, "render.format",
                 fmt::format("'{}' has the extension '{}'; expected .png or .exr", path, extension), path);
   if (aov == Aov::color) return write_png(path, result.image.width, result.image.height, 4, result.color);
-  return write_png(path, for_png(result.image, aov));
+  return write_png(path, aov_picture(result.image, aov));
 }
 
 Status run_render(const Context& context, const RenderOptions& options) {

@@ -34,10 +34,11 @@ struct WalkPlace {
 
 const float RELIEVO_WALK_FAST = 1.0e30;  // texels a unit of t
 
-// A step goes this far beyond the border it aims at, so that it always gets across; what lies on the way is tested from
-// the far side, where a point below the surface is a hit.
+// A step goes this far beyond the border it aims at; what lies on the way is tested from the far side, where a point below
+// the surface is a hit.
 const float RELIEVO_WALK_MARGIN = 1.0e-6;
-const float RELIEVO_WALK_ACROSS = 1.0 + 1.0 / 4194304.0;  // of a cell: four times what tells fractions apart
+// Where a cell ends, a hair beyond its border: a ray that comes to it slowly gets across in a step, or in a few far out.
+const float RELIEVO_WALK_ACROSS = 1.0 + 1.0 / 4194304.0;
 const float RELIEVO_WALK_NEVER = 1.0e30;  // s of an event that does not occur; times 1024 it is still finite
 const float RELIEVO_WALK_FAR = 1.0e6;     // texels: cells are folded exactly a tenth further
 const float RELIEVO_WALK_SAME = 1024.0;   // cells solved as one, at most: one float tells the place of a hit in them
@@ -210,20 +211,20 @@ float relievo_walk_left(Walk walk, vec2 s) {
 }
 
 // Cells that lie ahead along each axis and are one with this one: beyond the edge of a clamped map nothing changes along the
-// axis, for ever or until the map begins.
+// axis, for ever or until the map begins. The last before the map is left alone: one float does not say to 1e-6 texel where a
+// longer way ends.
 vec2 relievo_walk_same_ahead(Walk walk, vec2 cell) {
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLAMP
   bvec2 forward = greaterThanEqual(walk.heading, vec2(0.0));
   vec2 before = -1.0 - cell, behind = cell - (walk.extent - 1.0);
-  vec2 to_map = clamp(mix(behind, before, vec2(forward)), 0.0, RELIEVO_WALK_SAME);
+  vec2 to_map = clamp(mix(behind, before, vec2(forward)) - 1.0, 0.0, RELIEVO_WALK_SAME);
   return mix(to_map, vec2(RELIEVO_WALK_SAME), greaterThanEqual(mix(before, behind, vec2(forward)), vec2(0.0)));
 #else
   return vec2(0.0);
 #endif
 }
 
-// How far it is to the border of the cell, and of those that are one with it; a hair beyond, so that a ray that crosses it
-// slowly is across.
+// How far it is to the border of the cell and of those that are one with it.
 float relievo_walk_border(Walk walk, WalkPlace place) {
   precise vec2 own = RELIEVO_WALK_ACROSS - abs(walk.behind_at_zero - place.fraction);
   precise vec2 border = (relievo_walk_same_ahead(walk, place.cell) + own) * walk.pace;

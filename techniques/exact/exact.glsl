@@ -4,8 +4,8 @@
 // the next coarser node. Else it goes on to where it sinks to the maximum, and descends. At level 0 the cell is solved.
 #include "shaders/lib/walk_search.glsl"
 
-// Cells of the node that lie ahead of this one, along each axis; nodes end where the map does. What a clamped map has
-// beyond its edge is bounded by the outermost nodes, without end.
+// Cells of the node that lie ahead of this one, along each axis, and before them those that are one with it; nodes end where
+// the map does. What a clamped map has beyond its edge is bounded by the outermost nodes, without end.
 vec2 exact_cells_ahead(Walk walk, vec2 cell, FoldedCell folded, ivec2 node, int level) {
   vec2 extent = walk.extent;
   vec2 first = vec2(node << level);
@@ -19,13 +19,18 @@ vec2 exact_cells_ahead(Walk walk, vec2 cell, FoldedCell folded, ivec2 node, int 
   return ahead;
 }
 
+// What is taken off the way over the cells ahead, relative to it, so that it does not end behind the node: 8 roundings of
+// 2^-24, the quotient being 2.5 ulp.
+const float EXACT_ROUNDING = 6.0e-7;
+
 // How far the ray is let through within the node of `level`; `border`: how far it is to the node's border.
 float exact_free(Walk walk, WalkPlace place, float fall, int level, out float border) {
   FoldedCell folded = relievo_fold_cell(place.cell, walk.extent, walk.heading);
   ivec2 node = ivec2(folded.cell) >> level;
   float greatest = relievo_max_pyramid_at(node, level);
   vec2 behind = abs(walk.behind_at_zero - place.fraction);
-  precise vec2 borders = (exact_cells_ahead(walk, place.cell, folded, node, level) + (1.0 - behind)) * walk.pace;
+  vec2 ahead = exact_cells_ahead(walk, place.cell, folded, node, level);
+  precise vec2 borders = (ahead * (1.0 - EXACT_ROUNDING) + (RELIEVO_WALK_ACROSS - behind)) * walk.pace;
   precise float sink = (place.height - greatest) * fall;
   border = min(borders.x, borders.y);
   return min(border, sink);

@@ -55,7 +55,8 @@ Glide quadrant_maxima_glide(Walk walk, vec2 s, WalkPlace place) {
   float reach = min(min(period.x, period.y), QUADRANT_MAXIMA_REACH);
   float left = relievo_walk_left(walk, s);
   glide.left = min(left, reach);
-  precise float longest = min(left, reach + min(u.w, v.w));  // with the step that ends the glide
+  // With the step that ends the glide, a whole window at most.
+  precise float longest = min(left, reach + widths.w * min(walk.pace.x, walk.pace.y));
   precise float height = place.height - (QUADRANT_MAXIMA_ROUNDING * longest + QUADRANT_MAXIMA_HEIGHT);
   precise float top = 1.0 + RELIEVO_QUADRANT_MAXIMA_UNIT * height;
   glide.top = top;
@@ -168,8 +169,8 @@ Hit quadrant_maxima_trace(Ray ray) {
       float border = relievo_search_cell(walk, place, relievo_cell_corners_at(place.cell, walk.extent), search);
       on = border + RELIEVO_WALK_MARGIN;
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLAMP
-      // Beyond the edge that may be further than a glide goes.
-      if (!(search.hit < RELIEVO_WALK_NEVER)) {
+      // Beyond the edge that may be many cells, further than a glide goes.
+      if (!(search.hit < RELIEVO_WALK_NEVER) && on > 2.0 * min(walk.pace.x, walk.pace.y)) {
         search.s = relievo_walk_on(search.s, on);
         place = relievo_walk_place(walk, search.s);
         on = 0.0;

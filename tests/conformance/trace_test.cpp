@@ -95,6 +95,46 @@ TEST(Trace, ExactTechniquesCrossWhatLiesBeyondTheEdgeInFewSteps) {
   }
 }
 
+/// Missed, false, wrong and exhausted ones, by all techniques that promise the first hit, on both backends.
+void expect_all_found(const HeightMap& map, const std::vector<Ray>& rays, std::size_t least_judged) {
+  const std::vector<Hit> truth = Oracle(map).trace(rays);
+  for (const std::string& name : both_backends) {
+    for (const char* technique : exact_techniques) {
+      const auto hits = trace_on(name, map, rays, request_of(technique));
+      const ErrorFigures error = compare_hits(truth, hits, map.width, map.height);
+      EXPECT_EQ(error.exhausted + error.missed + error.false_hit + error.wrong_layer, 0U)
+          << technique << " on " << name;
+      EXPECT_GE(error.judged, least_judged);
+    }
+  }
+}
+
+/// It sinks in by 1.5e-5 of H within 1e-4 texel of a corner of the map, 900 equal cells beyond both edges.
+TEST(Trace, AHairOfACellAtTheCornerOfAClampedMapIsFoundFromAfar) {
+  const HeightMap map{
+      3, 3, {0.593000889f, 0, 0.458329499f, 1, 0.528607845f, 1, 0.520209908f, 0, 0.782574773f}, AddressMode::clamp};
+  const Ray ray{-302.100372f, -203.169891f, 0.593012214f, 0.276576877f, 0.186054677f, 8.40432113e-10f};
+  expect_all_found(map, {ray}, 1);
+}
+
+/// They come to a border of cells in no time that floats tell, and stay there.
+TEST(Trace, RaysAHairOffAGridLineAreNotExhausted) {
+  for (const AddressMode mode : {AddressMode::repeat, AddressMode::mirror, AddressMode::clamp, AddressMode::clip}) {
+    HeightMap map{4, 4, std::vector<float>(16, 0.25f), mode};
+    map.texels[5] = 0.9f;
+    std::vector<Ray> rays;
+    for (const double across : {-1e-9, 1e-9, -6e-17, 6e-17}) {
+      for (const double along : {-1., 1.}) {
+        for (int texel = 0; texel < 4; ++texel) {
+          rays.push_back({0.125 + 0.25 * texel, 0.125, 0.95, along, across, -0.001});
+          rays.push_back({0.125, 0.125 + 0.25 * texel, 0.95, across, along, -0.001});
+        }
+      }
+    }
+    expect_all_found(map, rays, rays.size() / 2);
+  }
+}
+
 TEST(Trace, TheSameJudgementCatchesSeededFaults) {
   const HeightMap map = smooth_noise_map(33, 20);
   const std::vector<Ray> rays = bounded_rays(map, 400, 7);

@@ -368,6 +368,21 @@ std::vector<std::string> filtered_by(const std::string& technique, HeightFilter 
   return filtered_in(compose(registry(), permutation));
 }
 
+TEST(ComposeFilters, StagesThatTakeNormalsFromHeightsSampleNothingWithTheExactFilter) {
+  for (const auto& [name, stage] : registry().stages) {
+    const std::string axis = name + ".normal_source";
+    const bool has_axis = std::any_of(stage.parameters.begin(), stage.parameters.end(),
+                                      [](const Parameter& one) { return one.name == "normal_source"; });
+    if (!has_axis) continue;
+    Permutation permutation;
+    permutation.stage = name;
+    for (const std::string& role : stage.roles) permutation.roles[role] = "relief";
+    EXPECT_THAT(filtered_in(compose(registry(), permutation)), testing::ElementsAre("relievo_normal_map")) << name;
+    permutation.values[axis] = 1;
+    EXPECT_THAT(filtered_in(compose(registry(), permutation)), testing::IsEmpty()) << name;
+  }
+}
+
 TEST(ComposeFilters, TheExactFilterSamplesNothingButNormals) {
   for (const auto& [name, technique] : registry().techniques) {
     if (technique.technique_class == TechniqueClass::reference) continue;

@@ -98,7 +98,7 @@ Status write_map(const std::filesystem::path& path, const MapData& map,
 Result<MapFile> read_map(const std::filesystem::path& path, const MapData* shape = nullptr);
 
 /// The texture of a map, of its bits: 1, 2 or 4 channels (3 become 4), with the address mode of the map; filtered
-/// linearly unless it holds whole numbers. Programs that only fetch (BindingSlot::is_filtered) do with any filter.
+/// linearly unless it holds whole numbers. Where BindingSlot::is_filtered is false any filter will do.
 Texture map_texture(const MapData& map);
 
 /// A height map as a texture of the axis `height.format`: "red"; "alpha": RGBA floats, the first three 0;

@@ -42,7 +42,9 @@ ImageFlow image_flow(std::span<const std::uint32_t> words) {
       case spv::OpLoad:
       case spv::OpAccessChain:
       case spv::OpInBoundsAccessChain:
+      case spv::OpCompositeExtract:
       case spv::OpCopyObject:
+      case spv::OpImage:
       case spv::OpSampledImage:
         flow.sources.emplace(operands[1], operands[2]);
         break;

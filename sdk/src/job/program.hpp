@@ -46,8 +46,8 @@ void bind_parameters(const ComposedProgram& composed, Job& job, std::vector<Reso
 /// Drops the bindings that the program's contract does not contain: resources of shaders that were optimised away.
 void keep_contract(const ShaderProgram& program, std::vector<ResourceBinding>& resources);
 
-/// Gives a filter of samplers up where no program of the job's commands samples the texture: not all devices have one
-/// for 32-bit floats.
+/// Sets samplers to nearest where no program of the job samples their texture: not all devices can filter 32-bit
+/// floats.
 void keep_filters(Job& job);
 
 void append_messages(const JobResult& result, std::vector<std::string>* messages);

@@ -38,10 +38,10 @@ const float RELIEVO_WALK_FAST = 1.0e30;  // texels a unit of t
 // the surface is a hit.
 const float RELIEVO_WALK_MARGIN = 1.0e-6;
 // Where a cell ends, a hair beyond its border: a ray that comes to it slowly gets across in a step, or in a few far out.
-const float RELIEVO_WALK_ACROSS = 1.0 + 1.0 / 4194304.0;
+const float RELIEVO_WALK_ACROSS = 1.0 + 1.0 / 8388608.0;
 const float RELIEVO_WALK_NEVER = 1.0e30;  // s of an event that does not occur; times 1024 it is still finite
 const float RELIEVO_WALK_FAR = 1.0e6;     // texels: cells are folded exactly a tenth further
-const float RELIEVO_WALK_SAME = 1024.0;   // cells solved as one, at most: one float tells the place of a hit in them
+const float RELIEVO_WALK_SAME = 128.0;    // cells solved as one, at most: one float tells the place of a hit in them
 
 // a · b as a sum of two floats (Dekker 1971), for |a|, |b| < 2^100.
 void relievo_two_product(vec2 a, vec2 b, out vec2 product, out vec2 error) {

@@ -19,9 +19,10 @@ vec2 exact_cells_ahead(Walk walk, vec2 cell, FoldedCell folded, ivec2 node, int 
   return ahead;
 }
 
-// What is taken off the way over the cells ahead, relative to it, so that it does not end behind the node: 8 roundings of
-// 2^-24, the quotient being 2.5 ulp.
+// A way over many cells may end behind the node, and what lies there between two steps is not looked at: 8 roundings of 2^-24 are
+// taken off it, the quotient being 2.5 ulp, beyond so many cells that they matter (3e-5 texel).
 const float EXACT_ROUNDING = 6.0e-7;
+const float EXACT_FEW_CELLS = 63.0;
 
 // How far the ray is let through within the node of `level`; `border`: how far it is to the node's border.
 float exact_free(Walk walk, WalkPlace place, float fall, int level, out float border) {
@@ -30,7 +31,8 @@ float exact_free(Walk walk, WalkPlace place, float fall, int level, out float bo
   float greatest = relievo_max_pyramid_at(node, level);
   vec2 behind = abs(walk.behind_at_zero - place.fraction);
   vec2 ahead = exact_cells_ahead(walk, place.cell, folded, node, level);
-  precise vec2 borders = (ahead * (1.0 - EXACT_ROUNDING) + (RELIEVO_WALK_ACROSS - behind)) * walk.pace;
+  vec2 lost = EXACT_ROUNDING * max(ahead - EXACT_FEW_CELLS, vec2(0.0));
+  precise vec2 borders = ((ahead - lost) + (RELIEVO_WALK_ACROSS - behind)) * walk.pace;
   precise float sink = (place.height - greatest) * fall;
   border = min(borders.x, borders.y);
   return min(border, sink);

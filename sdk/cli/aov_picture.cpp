@@ -26,9 +26,12 @@ Range range_of(const Image& numbers) {
     if (is_drawn(&numbers.pixels[i])) values.push_back(numbers.pixels[i]);
   }
   if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const std::size_t hundredth = values.size() / 100;
-  return {values[hundredth], values[values.size() - 1 - hundredth], values.back()};
+  const auto hundredth = static_cast<std::ptrdiff_t>(values.size() / 100);
+  const auto near = values.begin() + hundredth, far = values.end() - 1 - hundredth;
+  std::nth_element(values.begin(), far, values.end());
+  const float most = *std::max_element(far, values.end());
+  std::nth_element(values.begin(), near, far);
+  return {*near, *far, most};
 }
 
 void set_grey(float* pixel, float grey) {

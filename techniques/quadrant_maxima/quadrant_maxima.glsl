@@ -104,8 +104,7 @@ int quadrant_maxima_free(Walk walk, Glide glide, GlidePace pace, float s, out in
   precise vec4 u = glide.u + before.x, v = glide.v + before.y;
   precise vec2 cell = glide.cell + before;
 #if RELIEVO_ADDRESS == RELIEVO_ADDRESS_CLAMP
-  precise vec2 same = cell + min(relievo_walk_same_ahead(walk, vec2(here)), relievo_quadrant_maxima_widths().w - 1.0) * walk.pace;
-  cell = same;
+  cell += min(relievo_walk_same_ahead(walk, vec2(here)), relievo_quadrant_maxima_widths().w - 1.0) * walk.pace;
 #endif
   precise vec4 sink = (glide.top + s * pace.climb - maxima.windows) * pace.fall;
   ivec4 free = min(min(floatBitsToInt(u), floatBitsToInt(v)), floatBitsToInt(sink));

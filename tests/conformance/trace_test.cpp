@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
 
 #include "support/linear_claims.hpp"
 #include "support/pipeline.hpp"
@@ -72,6 +73,24 @@ TEST(Trace, AFineLinearSearchFindsEveryFirstHitThatLastsAStep) {
   EXPECT_GT(certain, 3000) << "too few rays are judged for the figures above to mean anything";
 }
 
+/// Missed, false, wrong and exhausted ones, by all techniques that promise the first hit, on both backends.
+/// With `max_steps` instead of the techniques' own, if it is given.
+void expect_all_found(const HeightMap& map, const std::vector<Ray>& rays, std::size_t least_judged,
+                      std::optional<int> max_steps = {}) {
+  const std::vector<Hit> truth = Oracle(map).trace(rays);
+  for (const std::string& name : both_backends) {
+    for (const std::string technique : exact_techniques) {
+      TraceRequest request = request_of(technique);
+      if (max_steps) request.values[technique + ".max_steps"] = *max_steps;
+      const auto hits = trace_on(name, map, rays, request);
+      const ErrorFigures error = compare_hits(truth, hits, map.width, map.height);
+      EXPECT_EQ(error.exhausted + error.missed + error.false_hit + error.wrong_layer, 0U)
+          << technique << " on " << name << ", " << map.width << "x" << map.height;
+      EXPECT_GE(error.judged, least_judged);
+    }
+  }
+}
+
 /// Beyond the edge cells are all the same along an axis; along the other, a ray may take tens of tiles to leave one.
 TEST(Trace, ExactTechniquesCrossWhatLiesBeyondTheEdgeInFewSteps) {
   constexpr int few = 1500;  // of the 5000 cells that a ray crosses, each a step or three
@@ -82,30 +101,7 @@ TEST(Trace, ExactTechniquesCrossWhatLiesBeyondTheEdgeInFewSteps) {
       const double heading = 0.0157 * i, du = std::cos(heading), dv = std::sin(heading), h = 0.0025 * i;
       rays.push_back({0.5 - 20 * du, 0.5 + 0.001 * i - 20 * dv, h, du, dv, i % 2 ? 0 : -0.001, 20});
     }
-    const std::vector<Hit> truth = Oracle(map).trace(rays);
-    for (const std::string& name : both_backends) {
-      for (const std::string technique : exact_techniques) {
-        const auto hits = trace_on(name, map, rays, request_of(technique, {{technique + ".max_steps", few}}));
-        const ErrorFigures error = compare_hits(truth, hits, width, height);
-        EXPECT_EQ(error.exhausted + error.missed + error.false_hit + error.wrong_layer, 0U)
-            << technique << " on " << name << ", " << width << "x" << height;
-        EXPECT_GT(error.judged, 380U);
-      }
-    }
-  }
-}
-
-/// Missed, false, wrong and exhausted ones, by all techniques that promise the first hit, on both backends.
-void expect_all_found(const HeightMap& map, const std::vector<Ray>& rays, std::size_t least_judged) {
-  const std::vector<Hit> truth = Oracle(map).trace(rays);
-  for (const std::string& name : both_backends) {
-    for (const char* technique : exact_techniques) {
-      const auto hits = trace_on(name, map, rays, request_of(technique));
-      const ErrorFigures error = compare_hits(truth, hits, map.width, map.height);
-      EXPECT_EQ(error.exhausted + error.missed + error.false_hit + error.wrong_layer, 0U)
-          << technique << " on " << name;
-      EXPECT_GE(error.judged, least_judged);
-    }
+    expect_all_found(map, rays, 381, few);
   }
 }
 
